@@ -268,6 +268,12 @@ Activities Robot::activities() const
   return impl_->activities.now();
 }
 
+bool Robot::is_at_rest_except(Activities modes) const
+{
+  const Activities active = activities();
+  return active.without(modes).empty() && (active.contains_any(modes) || !is_moving());
+}
+
 Status Robot::set_watchdog(double frequency)
 {
   return impl_->set_watchdog(frequency);
@@ -302,6 +308,14 @@ Expected<StopReport> Robot::end_motion(const Lease & lease, const StopOptions & 
     return StopReport{};
   }
   return impl_->stopper.end(*lease.permit_, options).get();
+}
+
+Expected<StopReport> Robot::pause_motion(const Lease & lease, const StopOptions & options)
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return StopReport{};
+  }
+  return impl_->stopper.pause(*lease.permit_, options).get();
 }
 
 bool Robot::is_stopping() const

@@ -7,6 +7,7 @@
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/command_traits.hpp"
+#include "ur_ros_rtde/detail/called_command.hpp"
 #include "ur_ros_rtde/detail/command_goal.hpp"
 #include "ur_ros_rtde/detail/goal_server.hpp"
 #include "ur_ros_rtde/detail/guarded.hpp"
@@ -66,10 +67,12 @@ class Command : public CommandPlugin {
 
   void start_action_server(CommandHost & host, const std::string & name) override;
   void stop_action_server() override { stop_server(); }
+  /// A goal of this command as a part of another one's, whose message and result outlive it.
+  CalledCommand called(const Goal & goal, Result & result);
 
  private:
   class GoalOfCommand;
-  void stop_server() { server_.reset(); }
+  void stop_server();
 
   std::shared_ptr<const CommandDescription> description_;
   std::unique_ptr<GoalServer> server_;
@@ -132,6 +135,39 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
       [this](const Outcome & outcome, void * result) {
         fill_result(outcome, *static_cast<Result *>(result));
       });
+  host.add_command(name, *this);
+}
+
+template <typename A>
+void Command<A>::stop_server()
+{
+  if (description_) {
+    description_->host.remove_command(description_->plugin);
+  }
+  server_.reset();
+}
+
+template <typename A>
+CalledCommand Command<A>::called(const Goal & goal, Result & result)
+{
+  return {*description_, [this, &goal](Check & check) { this->check(goal, check); },
+          [this, &goal] { return stop_options(goal); },
+          [this, &goal, &result](const RunContext & context) {
+            Run run(context);
+            const Outcome outcome = run.with_warnings(this->run(goal, run));
+            result = std::move(run.result());
+            fill_result(outcome, result);
+            return outcome;
+          }};
+}
+
+template <typename A>
+Outcome Run::call(const std::string & command, const typename A::Goal & goal, typename A::Result & result)
+{
+  CommandPlugin * const plugin = find_command(command);
+  auto * const typed = dynamic_cast<Command<A> *>(plugin);
+  return typed != nullptr ? execute(typed->called(goal, result))
+                          : Outcome(not_callable(command, plugin != nullptr));
 }
 
 }  // namespace ur_ros_rtde

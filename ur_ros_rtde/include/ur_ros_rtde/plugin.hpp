@@ -13,13 +13,20 @@ class CommandHost;
 class DashboardHost;
 
 /// Incremented when plugins that were built against older headers cannot work anymore.
-constexpr std::uint32_t plugin_abi_version = 5;
+constexpr std::uint32_t plugin_abi_version = 6;
 
 /// The interface of a plugin of command_server. Derive from Command<A> (command.hpp) unless the plugin needs
 /// an action server of its own kind.
 class CommandPlugin {
  public:
   virtual ~CommandPlugin() = default;
+  /// Called first, before the connection to the robot: for what the plugin needs besides its goals, such as
+  /// parameters, topics, services and timers of host.node(), or a Supervision. Callbacks run in the thread
+  /// that accepts the goals of all commands and must not wait; stops have a thread of their own. If it
+  /// throws, the plugin is not used.
+  virtual void on_load(CommandHost &) {}
+  /// Called last, after stop_action_server(); not for a plugin that could not be started, which is destroyed.
+  virtual void on_unload() {}
   /// Called once. `host` outlives the plugin. `name` is the name of the plugin and of its action: "move_l".
   /// If it throws, the error is reported with the plugin's name, and the plugin is not used.
   virtual void start_action_server(CommandHost & host, const std::string & name) = 0;
@@ -34,6 +41,9 @@ class CommandPlugin {
 class DashboardPlugin {
  public:
   virtual ~DashboardPlugin() = default;
+  /// As those of CommandPlugin.
+  virtual void on_load(DashboardHost &) {}
+  virtual void on_unload() {}
   virtual void start_action_server(DashboardHost & host, const std::string & name) = 0;
   virtual void stop_action_server() = 0;
 };

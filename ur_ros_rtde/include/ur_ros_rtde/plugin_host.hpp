@@ -3,18 +3,23 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <rcl_cxx/node.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 #include <utility>
 
 #include "ur_ros_rtde/detail/goals.hpp"
+#include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
+class CommandPlugin;
 class DashboardConnection;
 class Robot;
 
@@ -54,15 +59,22 @@ class CommandHost : public PluginHost {
   const Options & options() const { return options_; }
   /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
-  /// Number of stops that clients have requested. A goal that was received before the last one does not move
-  /// the arm after it.
+  /// Robot::begin_stop(), after which no goal moves the arm that was received before.
+  std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
+  /// Number of calls of begin_stop().
   std::uint32_t stops() const { return stops_; }
-  void count_stop() { ++stops_; }
+  /// The commands that Run::call() finds, by name.
+  void add_command(const std::string & name, CommandPlugin & command);
+  void remove_command(const std::string & name);
+  /// Null if there is none of that name.
+  CommandPlugin * find_command(const std::string & name) const;
 
  private:
   Robot & robot_;
   Options options_;
   std::atomic<std::uint32_t> stops_ = 0;
+  mutable std::mutex commands_mutex_;
+  std::map<std::string, CommandPlugin *> commands_;
 };
 
 class DashboardHost : public PluginHost {

@@ -18,6 +18,9 @@
 
 namespace ur_ros_rtde {
 
+struct CalledCommand;
+class CommandPlugin;
+
 /// Gives a command access to the robot while it executes a goal, in the goal's thread.
 ///
 /// Waits return early, with the reason, when the goal has to end: it was canceled or preempted, or the node
@@ -89,6 +92,21 @@ class Run {
   [[nodiscard]] std::optional<StopReason> until_standstill(
       std::chrono::nanoseconds timeout = std::chrono::seconds(5));
 
+  /// Executes a goal of another command, named as its action ("move_l"), as a part of this one: it is
+  /// checked, moves the arm with the right of this goal, and ends when this goal has to end. The feedback is
+  /// that of this goal. When it ends, what it has started is stopped as for a goal of its own; this goal goes
+  /// on, also after a failure. `result` receives the result. Fails with the reason, which names the command.
+  /// In command.hpp.
+  template <typename A>
+  [[nodiscard]] Outcome call(const std::string & command, const typename A::Goal & goal,
+                             typename A::Result & result);
+  template <typename A>
+  [[nodiscard]] Outcome call(const std::string & command, const typename A::Goal & goal)
+  {
+    typename A::Result unused;
+    return call<A>(command, goal, unused);
+  }
+
   /// Calls Robot::run_script, publishes feedback in the meantime, and stops the script when the goal has to
   /// stop. Requires Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});
@@ -134,6 +152,11 @@ class Run {
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();
+  CommandPlugin * find_command(const std::string & name) const;
+  Outcome execute(const CalledCommand & called);
+  Status may_execute(const CalledCommand & called) const;
+  /// Stops what a called command has started and does not leave active.
+  Outcome settle(const CalledCommand & called, const Outcome & outcome, Activities active_before);
 
   const RunContext context_;
   double progress_ = 0.0;

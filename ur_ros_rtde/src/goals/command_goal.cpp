@@ -113,11 +113,10 @@ Status CommandGoal::check(std::vector<GoalQuery> & queries)
 
 void CommandGoal::begin_stop()
 {
-  command_->host.count_stop();
   if (const auto holder = robot().holder(Resource::script)) {
     preempted_goal_ = fmt::format("{}, goal {}", holder->owner, holder->id);
   }
-  stopping_ = robot().begin_stop(
+  stopping_ = command_->host.begin_stop(
       stop_options_,
       Error{ErrorCode::preempted, fmt::format("preempted by {}, goal {}", action(), id().short_string())});
 }
@@ -195,7 +194,7 @@ RunContext CommandGoal::make_context()
 {
   RunContext context{robot(), shared_stop_request()};
   context.lease = command_->needs_motion() ? &lease_ : nullptr;
-  context.plugin = command_->plugin;
+  context.command = command_.get();
   context.stopping = stopping_;
   context.preempted_goal = preempted_goal_;
   context.log_warning = [this](const std::string & text) { warn(text); };
@@ -246,13 +245,6 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
   return outcome;
 }
 
-bool CommandGoal::leaves_as_it_is(const StopOptions & options) const
-{
-  const Activities active = robot().activities();
-  const bool mode_moves_arm = active.contains_any(options.keep);
-  return active.without(options.keep).empty() && (mode_moves_arm || !robot().is_moving());
-}
-
 Outcome CommandGoal::settle(const Outcome & outcome)
 {
   if (!lease_ || !moves_arm(command_->traits.resource)) {
@@ -265,7 +257,7 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   StopOptions options = stop_options_;
   if (outcome) {
     options.keep = active_before_ | (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
-    if (!stop_request().reason() && leaves_as_it_is(options)) {
+    if (!stop_request().reason() && robot().is_at_rest_except(options.keep)) {
       return outcome;
     }
   }

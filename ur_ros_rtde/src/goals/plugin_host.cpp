@@ -25,6 +25,32 @@ void PluginHost::publish_rejection(const std::string & action, const rcl_cxx::Go
   rejections_->publish(rejection);
 }
 
+std::shared_future<Expected<StopReport>> CommandHost::begin_stop(const StopOptions & options,
+                                                                 const Error & why)
+{
+  ++stops_;
+  return robot_.begin_stop(options, why);
+}
+
+void CommandHost::add_command(const std::string & name, CommandPlugin & command)
+{
+  const std::lock_guard lock(commands_mutex_);
+  commands_[name] = &command;
+}
+
+void CommandHost::remove_command(const std::string & name)
+{
+  const std::lock_guard lock(commands_mutex_);
+  commands_.erase(name);
+}
+
+CommandPlugin * CommandHost::find_command(const std::string & name) const
+{
+  const std::lock_guard lock(commands_mutex_);
+  const auto found = commands_.find(name);
+  return found == commands_.end() ? nullptr : found->second;
+}
+
 ArmLimits CommandHost::limits() const
 {
   return robot_.limits();

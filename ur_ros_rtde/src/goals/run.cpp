@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/detail/command_goal.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
@@ -374,7 +375,7 @@ Outcome Run::trigger(double timeout)
         fmt::format("the timeout of the extension is {} s, it must be above 0 and at most {} s", timeout,
                     max_timeout));
   }
-  if (context_.lease == nullptr) {
+  if (context_.lease == nullptr || context_.command == nullptr) {
     return Outcome::failure(ErrorCode::exception, "an extension needs Resource::motion");
   }
   ExtensionOptions options;
@@ -384,7 +385,7 @@ Outcome Run::trigger(double timeout)
     publish_feedback_if_due();
     return stop_reason();
   };
-  return context_.robot.run_extension(*context_.lease, context_.plugin, options);
+  return context_.robot.run_extension(*context_.lease, context_.command->plugin, options);
 }
 
 }  // namespace ur_ros_rtde

@@ -43,6 +43,7 @@ void CommandServer::load_plugins()
   const ReportProblem report = log_plugin_problems(node_);
   plugins_.load(
       select_plugins(find_plugins(report), command_base, choice_.plugins, choice_.blacklist, report), report);
+  plugins_.initialize(*host_, report);
   add_extensions(report);
   robot_->connect();
 }

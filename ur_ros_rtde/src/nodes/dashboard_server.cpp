@@ -29,6 +29,7 @@ void DashboardServer::load_plugins()
   plugins_.load(
       select_plugins(find_plugins(report), dashboard_base, choice_.plugins, choice_.blacklist, report),
       report);
+  plugins_.initialize(*host_, report);
 }
 
 void DashboardServer::create_actions()

@@ -36,6 +36,12 @@ class PluginSet {
     }
   }
 
+  /// Calls on_load() of each plugin, with the same handling of errors.
+  void initialize(Host & host, const ReportProblem & report)
+  {
+    with_each("on_load() threw", report, [&](const PluginEntry &, Plugin & plugin) { plugin.on_load(host); });
+  }
+
   /// Starts the action servers, with the same handling of errors. Ends silently at a shutdown.
   void start(Host & host, const ReportProblem & report)
   {
@@ -73,7 +79,8 @@ class PluginSet {
     for (auto & loaded : plugins_) {
       try {
         loaded.plugin->stop_action_server();
-      } catch (...) {  // the destructor of the plugin ends the server in any case
+        loaded.plugin->on_unload();
+      } catch (...) {  // the destructor of the plugin ends both in any case
       }
     }
     plugins_.clear();

@@ -1,7 +1,16 @@
 """Ament prefixes with plugin packages."""
 
 import os
+import pathlib
 import shutil
+
+from support import find_program
+
+# Commands that are built with the tests (test/plugins), and their package.
+TEST_COMMANDS = "test_commands"
+_CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_speed_j": "CallsSpeedJ",
+            "calls_move_j_relative": "CallsMoveJRelative", "calls_itself": "CallsItself",
+            "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn"}
 
 
 def create_plugin_prefix(prefix, package, description, libraries=()):
@@ -21,3 +30,16 @@ def create_plugin_prefix(prefix, package, description, libraries=()):
 def prepend_path(variable, folder):
     """Returns {variable: value} with the folder in front of the current value of a path variable."""
     return {variable: os.pathsep.join([str(folder), os.environ.get(variable, "")])}
+
+
+def environment_of_test_commands(prefix):
+    """Creates the prefix of the commands that are built with the tests. Returns the environment in which a driver finds them,
+    which is empty if they have not been built."""
+    build = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build" / "ur_ros_rtde_commands"
+    library = build / "test" / "plugins" / f"lib{TEST_COMMANDS}.so"
+    if not library.is_file():
+        return {}
+    classes = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::CommandPlugin"/>'
+                      for name, kind in _CLASSES.items())
+    description = f'<library path="{TEST_COMMANDS}">{classes}</library>'
+    return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(prefix, TEST_COMMANDS, description, [library]))

@@ -130,6 +130,8 @@ class Robot {
   bool is_moving() const;
   /// What has been started and not ended, moving or not.
   Activities activities() const;
+  /// Nothing but `modes` is active, and only a mode may be moving the arm.
+  bool is_at_rest_except(Activities modes) const;
   /// Makes the control program stop the arm if it receives no heartbeat for 1/frequency s (Hz,
   /// min_watchdog_frequency to max_watchdog_frequency). A restarted control program uses
   /// RobotOptions::watchdog_frequency again.
@@ -153,6 +155,8 @@ class Robot {
   /// For a holder that ends: stops what it has started, or waits for the stop that has taken the arm out of
   /// its hands.
   Expected<StopReport> end_motion(const Lease & lease, const StopOptions & options);
+  /// The same for a holder that goes on afterwards.
+  Expected<StopReport> pause_motion(const Lease & lease, const StopOptions & options);
   /// A stop is under way.
   bool is_stopping() const;
   /// Waits until all holders from whom a stop has taken the arm have released their leases. False after

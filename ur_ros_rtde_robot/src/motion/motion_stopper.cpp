@@ -127,6 +127,16 @@ Stopping MotionStopper::end(Permit & holder, const StopOptions & options)
       return begin_operation(options);
     }
   }
+  return current();
+}
+
+Stopping MotionStopper::pause(const Permit & holder, const StopOptions & options)
+{
+  return holder.revoked() ? current() : begin_operation(options);
+}
+
+Stopping MotionStopper::current()
+{
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return beginning_ == 0; });  // by the one that has revoked the permit
   return operation_ ? operation_->stopping : last_;

@@ -49,6 +49,8 @@ class MotionStopper {
   /// For a holder that ends: stops what it has started. If a stop has taken the arm out of its hands before,
   /// that one is returned.
   Stopping end(Permit & holder, const StopOptions & options);
+  /// For a holder that goes on afterwards: the same, but the arm stays in its hands.
+  Stopping pause(const Permit & holder, const StopOptions & options);
   /// For a holder that is told to end because of `why`: begins to stop the arm. A holder that brakes by
   /// itself may do so under supervision: it has to begin at once, and be at rest within `braking_timeout`.
   void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
@@ -84,6 +86,8 @@ class MotionStopper {
   class Beginning;
 
   Stopping begin_operation(const StopOptions & options);
+  /// The one that has taken the arm out of the hands of a holder.
+  Stopping current();
   /// An operation with at least these decelerations. The mutex must be held.
   void require(const StopOptions & options);
   void serve(const std::stop_token & stop);

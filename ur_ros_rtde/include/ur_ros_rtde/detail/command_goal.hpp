@@ -69,7 +69,6 @@ class CommandGoal : public Goal {
   Outcome explain(Outcome outcome, const Generation & begin) const;
   /// Stops what the goal has started and does not leave active.
   Outcome settle(const Outcome & outcome);
-  bool leaves_as_it_is(const StopOptions & options) const;
   /// Modes are active that were not before.
   bool started_modes() const;
 

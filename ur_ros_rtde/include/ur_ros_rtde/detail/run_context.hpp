@@ -11,12 +11,15 @@
 
 namespace ur_ros_rtde {
 
+struct CommandDescription;
+
 /// What a Run needs of the goal or the teleoperation session that it belongs to.
 struct RunContext {
   Robot & robot;
   std::shared_ptr<const StopRequest> stop_request;
   Lease * lease = nullptr;  ///< null: it does not move the arm
-  std::string plugin{};
+  const CommandDescription * command = nullptr;  ///< null: teleoperation
+  int depth = 0;  ///< of calls by other commands
   /// Of a stop: it has begun already.
   std::optional<std::shared_future<Expected<StopReport>>> stopping{};
   /// Of a stop: the goal that was executed, "/move_j, goal 3f0c12ab". Empty: none.

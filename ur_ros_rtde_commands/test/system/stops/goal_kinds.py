@@ -1,4 +1,4 @@
-"""What moves the arm: a goal of each motion command, stream, extension, script, mode, teleoperation topic and stubborn plugin.
+"""What moves the arm: a goal of each motion command, stream, extension, script, mode, teleoperation topic and test command.
 
 The fields of a goal are mappings for `messages.fill`, so that they can be sent to a client in another process.
 """
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
+from plugin_prefix import TEST_COMMANDS
 from support import HOME, JOINTS
 
 Fields = Dict[str, Any]
@@ -232,7 +233,6 @@ PACKAGE = "ur_ros_rtde_msgs/action/"
 FORCE_MODE = {"compliant": [False, False, True, False, False, False], "limits": [0.1, 0.1, 0.02, 0.5, 0.5, 0.5]}
 PUSH = {"command": "push", "force": [40.0, 60.0, 0.0], "duration": 4.0}
 TUTORIALS = "ur_ros_rtde_tutorials"
-STUBBORN = "stubborn_commands"
 
 KINDS: Sequence[GoalKind] = (
     GoalKind("move_j", "move_j", PACKAGE + "MoveJ", _move_j, JOINT, weight=2.0),
@@ -272,8 +272,9 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("topic servo_joint", "servo_joint", "sensor_msgs/msg/JointState", _speed_of_topic, is_topic=True, turns=True),
     GoalKind("topic servo_pose", "servo_pose", "geometry_msgs/msg/PoseStamped", _speed_of_topic, is_topic=True),
     GoalKind("topic twist", "twist", "geometry_msgs/msg/TwistStamped", _speed_of_topic, is_topic=True),
-    GoalKind("plugin slow to look", "slow_to_look", PACKAGE + "SpeedJ", _speed_j, JOINT, _own, package=STUBBORN),
-    GoalKind("plugin never looks", "never_looks", PACKAGE + "SpeedJ", _never_looks, JOINT, _own, package=STUBBORN),
+    GoalKind("plugin slow to look", "slow_to_look", PACKAGE + "SpeedJ", _speed_j, JOINT, _own, package=TEST_COMMANDS),
+    GoalKind("plugin never looks", "never_looks", PACKAGE + "SpeedJ", _never_looks, JOINT, _own, package=TEST_COMMANDS),
+    GoalKind("plugin calls speed_j", "calls_speed_j", PACKAGE + "SpeedJ", _speed_j, JOINT, _own, package=TEST_COMMANDS),
 )
 
 

@@ -16,10 +16,10 @@ from typing import Dict, List, Optional
 
 import messages
 from cell import Domain, StatusTrackingClient
-from plugin_prefix import create_plugin_prefix, prepend_path
+from plugin_prefix import TEST_COMMANDS, environment_of_test_commands
 from rclpy.action import ActionClient
 from rclpy.qos import QoSProfile
-from support import HOME, Simulator, find_program, start_node, wait_for
+from support import HOME, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -38,11 +38,6 @@ MOTION_LIMIT = 0.8  # s, for a goal that may not move at all
 READY_LIMIT = 10.0  # s, from the end of a disturbance to the first accepted motion
 RETRY_INTERVAL = 0.05  # s
 DISCOVERY_LIMIT = 20.0  # s
-BUILD = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build" / "ur_ros_rtde_commands" / "test"
-DESCRIPTION = """<library path="stubborn_commands">
-  <class name="slow_to_look" type="ur_ros_rtde::SlowToLook" base_class_type="ur_ros_rtde::CommandPlugin"/>
-  <class name="never_looks" type="ur_ros_rtde::NeverLooks" base_class_type="ur_ros_rtde::CommandPlugin"/>
-</library>"""
 
 
 @dataclass
@@ -92,13 +87,9 @@ class Lane:
 
     def _plugins(self) -> Dict[str, str]:
         """Returns the environment in which the driver finds the plugins that are built with the tests."""
-        self.packages = ["ur_ros_rtde_tutorials"]
-        stubborn = BUILD / "plugins" / "libstubborn_commands.so"
-        if not stubborn.is_file():
-            return {}
-        self.packages.append(goal_kinds.STUBBORN)
-        folder = self._log / f"prefix_{goal_kinds.STUBBORN}_{os.getpid()}"
-        return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(folder, goal_kinds.STUBBORN, DESCRIPTION, [stubborn]))
+        environment = environment_of_test_commands(self._log / f"prefix_{TEST_COMMANDS}_{os.getpid()}")
+        self.packages = ["ur_ros_rtde_tutorials", *([TEST_COMMANDS] if environment else [])]
+        return environment
 
     def close(self) -> None:
         if self._spare is not None:

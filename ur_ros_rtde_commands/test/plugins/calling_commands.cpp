@@ -1,0 +1,97 @@
+// Commands that call other commands.
+#include <ur_ros_rtde_msgs/action/move_j_relative.hpp>
+#include <ur_ros_rtde_msgs/action/send_script.hpp>
+#include <ur_ros_rtde_msgs/action/speed_j.hpp>
+
+#include "ur_ros_rtde/command.hpp"
+
+namespace ur_ros_rtde {
+
+using ur_ros_rtde_msgs::action::MoveJRelative;
+using ur_ros_rtde_msgs::action::SendScript;
+using ur_ros_rtde_msgs::action::SpeedJ;
+
+/// Calls speed_j, for the stop property test.
+class CallsSpeedJ : public Command<SpeedJ> {
+  StopOptions stop_options(const Goal & goal) const override
+  {
+    return {.joint_deceleration = goal.deceleration};
+  }
+
+  Outcome run(const Goal & goal, Run & run) override { return run.call<SpeedJ>("speed_j", goal); }
+};
+
+/// Calls the command that `script` names, with a goal of MoveJRelative. Then turns wrist 3 back, whatever the
+/// outcome was, which is the outcome of this command.
+class CallsMoveJRelative : public Command<SendScript> {
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    MoveJRelative::Goal there;
+    there.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, 0.2};
+    there.speed = goal.timeout;  // above 3.14: rejected by its check
+    MoveJRelative::Result result;
+    const Outcome outcome = run.call<MoveJRelative>(goal.script, there, result);
+    if (outcome) {
+      run.result().output = {result.success ? "success" : "failure", result.message};
+    }
+    MoveJRelative::Goal back;
+    back.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, -0.1};
+    const Outcome moved_back = run.call<MoveJRelative>("move_j_relative", back);
+    return outcome ? moved_back : outcome;
+  }
+};
+
+/// Calls itself.
+class CallsItself : public Command<SendScript> {
+  Outcome run(const Goal & goal, Run & run) override { return run.call<SendScript>("calls_itself", goal); }
+};
+
+/// Calls a motion, and does not have the arm.
+class CallsWithoutTheArm : public Command<SendScript> {
+  CommandTraits traits() const override { return {.resource = Resource::io}; }
+  Outcome run(const Goal &, Run & run) override
+  {
+    MoveJRelative::Goal goal;
+    goal.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, 0.2};
+    return run.call<MoveJRelative>("move_j_relative", goal);
+  }
+};
+
+/// Calls speed_j for a time, without waiting for its end by itself: leaves it turning in `run`, and fails.
+class LeavesTurning : public Command<SpeedJ> {
+  StopOptions stop_options(const Goal & goal) const override
+  {
+    return {.joint_deceleration = goal.deceleration};
+  }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration, 0.0);
+    constexpr std::chrono::milliseconds turning_time{300};
+    if (auto why = run.sleep_for(turning_time)) {
+      return *why;
+    }
+    return Outcome::failure(ErrorCode::not_reached, "left turning");
+  }
+};
+
+/// Calls leaves_turning, and moves on after its failure.
+class MovesOn : public Command<SpeedJ> {
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const Outcome failed = run.call<SpeedJ>("leaves_turning", goal);
+    MoveJRelative::Goal back;
+    back.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, -0.1};
+    const Outcome moved = run.call<MoveJRelative>("move_j_relative", back);
+    return moved ? failed : moved;
+  }
+};
+
+UR_ROS_RTDE_EXPORT(CallsSpeedJ, "calls_speed_j")
+UR_ROS_RTDE_EXPORT(CallsMoveJRelative, "calls_move_j_relative")
+UR_ROS_RTDE_EXPORT(CallsItself, "calls_itself")
+UR_ROS_RTDE_EXPORT(CallsWithoutTheArm, "calls_without_the_arm")
+UR_ROS_RTDE_EXPORT(LeavesTurning, "leaves_turning")
+UR_ROS_RTDE_EXPORT(MovesOn, "moves_on")
+
+}  // namespace ur_ros_rtde
