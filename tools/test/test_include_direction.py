@@ -10,8 +10,8 @@ BACKGROUND = True
 # From the top down: a directory may include headers of the directories after it. Headers in the package's own folder are free.
 DIRECTORIES = {
     "rcl_cxx": ("action", "services", "topics", "executor", "node", "parameters", "context", "events", "rcl_support"),
-    "ur_ros_rtde": ("programs", "process", "nodes", "recording", "teleoperation", "state", "diagnostics", "plugins", "goals",
-                    "detail"),
+    "ur_ros_rtde": ("programs", "process", "nodes", "recording", "teleoperation", "state", "diagnostics", "plugins", "streaming",
+                    "goals", "detail"),
     "ur_ros_rtde_robot": ("program", "motion", "state", "connection", "script"),
     "ur_ros_rtde_trajectory": ("kinematics", "trajectory", "timing", "solver", "motion", "path"),
     "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "modbus", "robot_api", "dashboard",

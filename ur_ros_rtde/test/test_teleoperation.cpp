@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "teleoperation/target_follower.hpp"
-#include "teleoperation/target_messages.hpp"
+#include "ur_ros_rtde/streaming.hpp"
+#include "ur_ros_rtde/target_messages.hpp"
 #include "ur_ros_rtde/check.hpp"
 
 namespace ur_ros_rtde {
@@ -19,7 +19,7 @@ sensor_msgs::msg::JointState joints(double first)
   return message;
 }
 
-std::string why_not(const Expected<TeleopTarget> & target)
+std::string why_not(const Expected<StreamTarget> & target)
 {
   return target ? "" : target.error().message;
 }
@@ -104,15 +104,15 @@ TEST(TargetFollowerTest, APositionCommandsNoMotionIfItIsThatOfTheArmAndOfTheMess
   Sample sample{};
   sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
-  const TeleopTarget far{{0.1, 0.1, 0.2, 0.3, 0.4, 0.5}}, near{{0.005, 0.1, 0.2, 0.3, 0.4, 0.5}};
+  const StreamTarget far{{0.1, 0.1, 0.2, 0.3, 0.4, 0.5}}, near{{0.005, 0.1, 0.2, 0.3, 0.4, 0.5}};
   const auto joints = follow_joints({});
   EXPECT_FALSE(joints->moves(near, &near, sample));
   EXPECT_TRUE(joints->moves(near, nullptr, sample));
   EXPECT_TRUE(joints->moves(far, &far, sample));
-  const TeleopTarget next{{0.006, 0.1, 0.2, 0.3, 0.4, 0.5}};
+  const StreamTarget next{{0.006, 0.1, 0.2, 0.3, 0.4, 0.5}};
   EXPECT_TRUE(joints->moves(next, &near, sample)) << "a program that goes on";
 
-  const TeleopTarget pose{{0.405, 0.1, 0.3, 0.0, 3.1, 0.0}}, turned{{0.405, 0.1, 0.3, 0.0, 3.05, 0.0}};
+  const StreamTarget pose{{0.405, 0.1, 0.3, 0.0, 3.1, 0.0}}, turned{{0.405, 0.1, 0.3, 0.0, 3.05, 0.0}};
   const auto poses = follow_poses({});
   EXPECT_FALSE(poses->moves(pose, &pose, sample));
   EXPECT_TRUE(poses->moves(turned, &turned, sample));
@@ -121,7 +121,7 @@ TEST(TargetFollowerTest, APositionCommandsNoMotionIfItIsThatOfTheArmAndOfTheMess
 
 TEST(TargetFollowerTest, RejectsTargetFarFromTheArm)
 {
-  TeleoperationOptions options;
+  StreamOptions options;
   Sample sample{};
   sample.actual_q = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   const auto follower = follow_joints(options);
@@ -135,7 +135,7 @@ TEST(TargetFollowerTest, RejectsTargetFarFromTheArm)
 
 TEST(TargetFollowerTest, ChecksPositionAndRotationOfAPose)
 {
-  TeleoperationOptions options;
+  StreamOptions options;
   Sample sample{};
   sample.actual_tcp_pose = {0.4, 0.1, 0.3, 0.0, 3.1, 0.0};
   const auto follower = follow_poses(options);

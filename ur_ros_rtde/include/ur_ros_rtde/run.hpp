@@ -107,6 +107,10 @@ class Run {
     return call<A>(command, goal, unused);
   }
 
+  /// Stops what this goal has started, by decelerating, and waits for standstill. Modes stay on; this goal
+  /// goes on.
+  [[nodiscard]] Outcome stop_motion(StopOptions options = {});
+
   /// Calls Robot::run_script, publishes feedback in the meantime, and stops the script when the goal has to
   /// stop. Requires Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});

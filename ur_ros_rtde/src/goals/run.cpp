@@ -316,6 +316,19 @@ Outcome Run::until_at_pose(const std::vector<double> & pose)
   return until_at(distance_to_pose(pose), servo_position_tolerance, "m");
 }
 
+Outcome Run::stop_motion(StopOptions options)
+{
+  if (context_.lease == nullptr) {
+    return Outcome::failure(ErrorCode::exception, "a command without Resource::motion has nothing to stop");
+  }
+  options.keep = robot().activities() & outlasting_modes;
+  if (robot().is_at_rest_except(options.keep)) {
+    return Outcome::success();
+  }
+  const auto stopped = context_.robot.pause_motion(*context_.lease, options);
+  return stopped ? Outcome::success() : Outcome(stopped.error());
+}
+
 ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
 {
   options.stop_reason = [this] {

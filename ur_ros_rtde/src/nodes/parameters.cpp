@@ -91,9 +91,9 @@ std::string declare_model(rcl_cxx::Node & node)
                              model, arm_models()));
 }
 
-TeleoperationOptions declare_teleoperation(rcl_cxx::Node & node)
+StreamOptions declare_teleoperation(rcl_cxx::Node & node)
 {
-  TeleoperationOptions options;
+  StreamOptions options;
   options.timeout = declare_number(
       node, "stream_timeout", options.timeout, 0.02, 1.0,
       "s: without a message on servo_joint, servo_pose or twist for this time, teleoperation ends "

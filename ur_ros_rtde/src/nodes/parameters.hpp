@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "nodes/robot_state_receiver.hpp"
-#include "teleoperation/options.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
 
@@ -36,7 +36,7 @@ struct CommandServerParameters {
   std::string tf_prefix;
   RobotOptions robot;
   CommandHost::Options goals;
-  TeleoperationOptions teleoperation;
+  StreamOptions teleoperation;
 };
 CommandServerParameters declare_command_server(rcl_cxx::Node & node);
 

@@ -10,9 +10,6 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Weight of the newest interval in the smoothed period.
-constexpr double period_weight = 0.2;
-
 double seconds(std::chrono::steady_clock::duration duration)
 {
   return std::chrono::duration<double>(duration).count();
@@ -35,7 +32,7 @@ std::string TeleopTopic::Latency::text() const
                      1e3 * seconds(sum) / static_cast<double>(count), 1e3 * seconds(longest));
 }
 
-TeleopTopic::TeleopTopic(std::string topic, CommandHost & host, const TeleoperationOptions & options,
+TeleopTopic::TeleopTopic(std::string topic, CommandHost & host, const StreamOptions & options,
                          std::unique_ptr<TargetFollower> follower, LogFunction log)
     : topic_(std::move(topic)),
       host_(host),
@@ -65,7 +62,7 @@ void TeleopTopic::end_session(const Error & why)
 {
   const std::lock_guard lock(mutex_);
   if (stop_request_ && stop_request_->request(why)) {
-    host_.robot().request_stop(lease_, stop_options(), why, {});
+    host_.robot().request_stop(lease_, options_.stop_options(), why, {});
   }
 }
 
@@ -77,7 +74,7 @@ void TeleopTopic::close()
   }
 }
 
-void TeleopTopic::on_message(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher)
+void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher)
 {
   const auto sample = host_.robot().latest();
   bool is_interrupted = false;
@@ -98,7 +95,7 @@ void TeleopTopic::on_message(Expected<TeleopTarget> target, const rcl_cxx::Publi
   }
 }
 
-TeleopTopic::Message TeleopTopic::following(Expected<TeleopTarget> target,
+TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
                                             const rcl_cxx::PublisherId & publisher,
                                             const std::optional<Sample> & sample) const
 {
@@ -109,9 +106,9 @@ TeleopTopic::Message TeleopTopic::following(Expected<TeleopTarget> target,
   const double interval = seconds(next.arrived - newest_.arrived);
   const bool first = newest_.number == 0 || interval > options_.timeout;
   next.session = newest_.session + (first ? 1 : 0);
-  // The period is unknown at the first message and uncertain at the second.
-  next.period = first ? 0.5 * options_.timeout : newest_.period + period_weight * (interval - newest_.period);
-  const TeleopTarget * const before = newest_.target ? &*newest_.target : nullptr;
+  next.periods = newest_.periods;
+  next.period = next.periods.next(interval, options_.timeout);
+  const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
   const bool goes_on = target && newest_.moves && next.moves && publisher == newest_.publisher;
   next.may_start = first ? !goes_on : newest_.may_start || !next.moves;
@@ -174,14 +171,9 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
   }
 }
 
-StopOptions TeleopTopic::stop_options() const
-{
-  return {.joint_deceleration = options_.deceleration, .linear_deceleration = options_.deceleration};
-}
-
 Outcome TeleopTopic::settle(const Error & why) const
 {
-  const auto stopped = host_.robot().end_motion(lease_, stop_options());
+  const auto stopped = host_.robot().end_motion(lease_, options_.stop_options());
   return stopped ? Outcome(why)
                  : Outcome::failure(why.code, fmt::format("{}; standstill is not confirmed: {}", why.message,
                                                           stopped.error().message));
@@ -191,23 +183,19 @@ Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)
 {
   try {
     const RealtimePriority priority(run.robot().realtime_priority());
-    const double cycle = run.robot().cycle_time();
-    Sample sample = run.state();
-    follower_->begin(sample, cycle, host_.limits());
+    TargetStream stream(run, *follower_, options_);
     for (std::uint64_t last_number = 0; true;) {
-      const double before = sample.controller_time;
-      if (auto why = run.next(sample)) {
+      if (auto why = stream.wait()) {
         return *why;
       }
       const Message message = newest();
       const bool is_new = message.number != std::exchange(last_number, message.number);
-      if (const Status valid = is_new ? set_target(message, session) : check_timeout(message, session);
+      if (const Status valid =
+              is_new ? set_target(stream, message, session) : check_timeout(message, session);
           !valid) {
         return valid.error();
       }
-      // After a delay of the host, the motion continues from the last command: slower, never faster.
-      const double elapsed = std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
-      if (const Status sent = follower_->advance(run, sample, elapsed); !sent) {
+      if (const Status sent = stream.send(); !sent) {
         return sent.error();
       }
       if (is_new) {
@@ -229,12 +217,12 @@ Status TeleopTopic::check_timeout(const Message & message, std::uint64_t session
   return {};
 }
 
-Status TeleopTopic::set_target(const Message & message, std::uint64_t session) const
+Status TeleopTopic::set_target(TargetStream & stream, const Message & message, std::uint64_t session) const
 {
   if (const Status timely = check_timeout(message, session); !timely) {
     return timely;
   }
-  return message.target ? follower_->set_target(*message.target, message.period)
+  return message.target ? stream.set(*message.target, message.period)
                         : tl::unexpected(message.target.error());
 }
 

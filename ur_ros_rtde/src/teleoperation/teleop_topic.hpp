@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "teleoperation/target_follower.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
@@ -27,7 +27,7 @@ namespace ur_ros_rtde {
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
-  TeleopTopic(std::string topic, CommandHost & host, const TeleoperationOptions & options,
+  TeleopTopic(std::string topic, CommandHost & host, const StreamOptions & options,
               std::unique_ptr<TargetFollower> follower, LogFunction log);
   /// Ends the session and joins the thread.
   ~TeleopTopic();
@@ -35,7 +35,7 @@ class TeleopTopic {
   TeleopTopic & operator=(const TeleopTopic &) = delete;
 
   /// Called with the target of each message, or with the reason why it is invalid. Does not wait.
-  void on_message(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher);
+  void on_message(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher);
   /// Tells the session to end, if there is one, and starts no other. Returns at once.
   void stop(const Error & why);
   /// Calls stop() and joins the thread.
@@ -45,11 +45,12 @@ class TeleopTopic {
   using Clock = std::chrono::steady_clock;
 
   struct Message {
-    Expected<TeleopTarget> target = TeleopTarget{};
+    Expected<StreamTarget> target = StreamTarget{};
     Clock::time_point arrived{};
     std::uint64_t number = 0;
     std::uint64_t session = 0;  ///< number of the session that the message belongs to
     double period = 0.0;        ///< s between messages, smoothed
+    TargetPeriod periods{};
     rcl_cxx::PublisherId publisher{};
     bool moves = false;      ///< commands a motion
     bool may_start = false;  ///< its session, if it has not been started yet
@@ -64,17 +65,16 @@ class TeleopTopic {
   };
 
   /// The message that follows the newest one.
-  Message following(Expected<TeleopTarget> target, const rcl_cxx::PublisherId & publisher,
+  Message following(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher,
                     const std::optional<Sample> & sample) const;
   void serve(const std::stop_token & stop);
   Outcome run_session(std::uint64_t session, Latency & latency);
   /// Tells the session of `lease` to end; the arm stops without waiting for its thread.
   void end_session(const Error & why);
-  StopOptions stop_options() const;
   /// Sends commands until there is a reason to end the session, which it returns.
   Error follow(Run & run, std::uint64_t session, Latency & latency);
   Status check_timeout(const Message & message, std::uint64_t session) const;
-  Status set_target(const Message & message, std::uint64_t session) const;
+  Status set_target(TargetStream & stream, const Message & message, std::uint64_t session) const;
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
   Outcome settle(const Error & why) const;
   Message newest() const;
@@ -82,7 +82,7 @@ class TeleopTopic {
 
   const std::string topic_;
   CommandHost & host_;
-  const TeleoperationOptions options_;
+  const StreamOptions options_;
   const std::unique_ptr<TargetFollower> follower_;
   const LogFunction log_;
 

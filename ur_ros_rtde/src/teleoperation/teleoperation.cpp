@@ -1,10 +1,10 @@
 #include "teleoperation/teleoperation.hpp"
 
-#include "teleoperation/target_messages.hpp"
+#include "ur_ros_rtde/target_messages.hpp"
 
 namespace ur_ros_rtde {
 
-Teleoperation::Teleoperation(CommandHost & host, const TeleoperationOptions & options,
+Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options,
                              const LogFunction & log)
     : joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log),
       poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),

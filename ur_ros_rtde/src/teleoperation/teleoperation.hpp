@@ -13,7 +13,7 @@ namespace ur_ros_rtde {
 /// The topics servo_joint, servo_pose and twist.
 class Teleoperation {
  public:
-  Teleoperation(CommandHost & host, const TeleoperationOptions & options, const LogFunction & log);
+  Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log);
   /// Tells all sessions to end and starts no other. Returns at once.
   void stop(const Error & why);
   /// Calls stop() and waits for their end.

@@ -8,6 +8,7 @@ import time
 
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
+from publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, start_node, wait_for
 
@@ -23,8 +24,8 @@ AT_REST = 0.01  # rad/s
 RETRY_INTERVAL = 0.05  # s
 RESTART_DISABLED = "restart_program is off: start the driver again"
 PREPARE_LIMIT = 3.0  # s, to return home after an example
-# The plugins that a cell itself uses.
-OWN_PLUGINS = {"move_j", "stop", "ft_rtde_input_enable", *(f"dashboard/{name}" for name in
+# The plugins that a cell itself, or a tutorial, uses.
+OWN_PLUGINS = {"move_j", "move_l_relative", "move_until_force", "stop", "ft_rtde_input_enable", *(f"dashboard/{name}" for name in
                ("robot_mode", "unlock_protective_stop", "power_on", "brake_release"))}
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
 
@@ -97,13 +98,20 @@ class Cell:
         self.simulator = Simulator(address(number), model=setup.controller)
         self.client = StatusTrackingClient(self._domain.number, f"test_client_{number}")
         self.driver, self._plugins = None, None
+        self._publishers = []
         self.start_driver()
 
     def close(self):
+        self._stop_publishers()
         self.driver.stop()
         self.client.close()
         self.simulator.stop()
         self._domain.close()
+
+    def _stop_publishers(self):
+        for publisher in self._publishers:
+            publisher.stop()
+        self._publishers.clear()
 
     def start_driver(self):
         chosen = [f"plugins:=[{', '.join(sorted(self._plugins))}]"] if self._plugins else []
@@ -146,6 +154,7 @@ class Cell:
     def prepare(self, example=None):
         """Moves the arm home, removes obstacles, and sets up the example's scene."""
         assert self.driver.running(), self.driver.output()
+        self._stop_publishers()
         if example and self._plugins and example.action not in self._plugins:
             self.load_plugins()
         try:
@@ -156,6 +165,14 @@ class Cell:
             self.restore()
         for command in example.scene if example else ():
             self._run_scene_command(dict(command))
+        for topic in example.topics if example else ():
+            self._publish(topic)
+
+    def _publish(self, topic):
+        """Publishes the topic until the next example is prepared."""
+        kind = messages.load(topic.type)
+        message = messages.fill(kind(), topic.message)
+        self._publishers.append(Publisher(self.client, kind, topic.name, lambda _time: message, topic.rate))
 
     def _run_scene_command(self, command):
         """Executes one command of a scene. `then_wait` is a delay afterwards, in seconds of simulated time."""

@@ -23,11 +23,22 @@ class Setup:
 
 
 @dataclass
+class Topic:
+    """A topic that is published during an example."""
+
+    name: str  # "visual_servo/target"
+    type: str  # "geometry_msgs/msg/PoseStamped"
+    message: dict
+    rate: float  # Hz
+
+
+@dataclass
 class Example:
     action: str  # "move_j"
     type: str  # "ur_ros_rtde_msgs/action/MoveJ"
     goal: dict
     scene: List[dict] = field(default_factory=list)  # commands to the simulator's control port
+    topics: List[Topic] = field(default_factory=list)
     setup: Setup = Setup()
 
 
@@ -43,7 +54,7 @@ class Section:
             if command[:3] == ["ros2", "action", "send_goal"]:
                 action, kind, goal = [word for word in command[3:] if word not in ("--feedback", "-f")]
                 if action == f"/{self.name}":
-                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene(), self.setup())
+                    return Example(self.name, kind, yaml.safe_load(goal) or {}, self.scene(), self.topics(), self.setup())
         raise ValueError(f"{self.file.name}: the section {self.name} has no `ros2 action send_goal /{self.name} …`")
 
     def _comment(self, name):
@@ -52,6 +63,15 @@ class Section:
 
     def scene(self):
         return json.loads(self._comment("scene") or "[]")
+
+    def topics(self):
+        """Returns the topics that the section publishes with `ros2 topic pub --rate RATE /NAME TYPE MESSAGE`."""
+        found = []
+        for command in _commands(self.text):
+            if command[:4] == ["ros2", "topic", "pub", "--rate"]:
+                rate, name, kind, message = command[4:8]
+                found.append(Topic(name.lstrip("/"), kind, yaml.safe_load(message), float(rate)))
+        return found
 
     def setup(self):
         return Setup(self._comment("controller") or Setup.controller, tuple((self._comment("parameters") or "").split()))

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "teleoperation/target_follower.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_trajectory/default_speeds.hpp"
@@ -103,9 +103,9 @@ Status check_joint_velocities(const Sample & sample, const ArmLimits & limits)
 
 class JointFollower : public TargetFollower {
  public:
-  explicit JointFollower(const TeleoperationOptions & options) : options_(options) {}
+  explicit JointFollower(const StreamOptions & options) : options_(options) {}
 
-  bool moves(const TeleopTarget & target, const TeleopTarget * before, const Sample & sample) const override
+  bool moves(const StreamTarget & target, const StreamTarget * before, const Sample & sample) const override
   {
     return before == nullptr || joint_distance(before->values, target.values) > standstill_step ||
            joint_distance(sample.actual_q, target.values) > standstill_distance;
@@ -121,7 +121,7 @@ class JointFollower : public TargetFollower {
     duration_.begin();
   }
 
-  Status set_target(const TeleopTarget & target, double period) override
+  Status set_target(const StreamTarget & target, double period) override
   {
     double at_default_speed = 0.0;
     double at_highest_speed = 0.0;
@@ -157,7 +157,7 @@ class JointFollower : public TargetFollower {
   }
 
  private:
-  const TeleoperationOptions options_;
+  const StreamOptions options_;
   ArmLimits limits_{};
   double cycle_ = 0.0;
   double setpoint_time_ = 0.0;  // cycles; lets the control program bridge late setpoints
@@ -167,16 +167,16 @@ class JointFollower : public TargetFollower {
 };
 
 /// The orientation is the identity.
-bool position_only(const TeleopTarget & target)
+bool position_only(const StreamTarget & target)
 {
   return target.values[3] == 0.0 && target.values[4] == 0.0 && target.values[5] == 0.0;
 }
 
 class PoseFollower : public TargetFollower {
  public:
-  explicit PoseFollower(const TeleoperationOptions & options) : options_(options) {}
+  explicit PoseFollower(const StreamOptions & options) : options_(options) {}
 
-  bool moves(const TeleopTarget & target, const TeleopTarget * before, const Sample & sample) const override
+  bool moves(const StreamTarget & target, const StreamTarget * before, const Sample & sample) const override
   {
     return before == nullptr || pose_distance(before->values, target.values) > standstill_step ||
            pose_distance(sample.actual_tcp_pose, target.values) > standstill_distance;
@@ -192,7 +192,7 @@ class PoseFollower : public TargetFollower {
     duration_.begin();
   }
 
-  Status set_target(const TeleopTarget & target, double period) override
+  Status set_target(const StreamTarget & target, double period) override
   {
     const Vector6 displacement = pose_trans(pose_inverse(at_), target.values);
     const double distance = std::hypot(displacement[0], displacement[1], displacement[2]);
@@ -232,7 +232,7 @@ class PoseFollower : public TargetFollower {
   }
 
  private:
-  const TeleoperationOptions options_;
+  const StreamOptions options_;
   ArmLimits limits_{};
   double cycle_ = 0.0;
   Vector6 from_{}, at_{};
@@ -243,9 +243,9 @@ class PoseFollower : public TargetFollower {
 
 class TwistFollower : public TargetFollower {
  public:
-  explicit TwistFollower(const TeleoperationOptions & options) : options_(options) {}
+  explicit TwistFollower(const StreamOptions & options) : options_(options) {}
 
-  bool moves(const TeleopTarget & target, const TeleopTarget *, const Sample &) const override
+  bool moves(const StreamTarget & target, const StreamTarget *, const Sample &) const override
   {
     return largest(target.values) > standstill_speed;
   }
@@ -256,7 +256,7 @@ class TwistFollower : public TargetFollower {
     target_ = {};
   }
 
-  Status set_target(const TeleopTarget & target, double) override
+  Status set_target(const StreamTarget & target, double) override
   {
     target_ = target;
     return {};
@@ -279,23 +279,23 @@ class TwistFollower : public TargetFollower {
   }
 
  private:
-  const TeleoperationOptions options_;
+  const StreamOptions options_;
   ArmLimits limits_{};
-  TeleopTarget target_{};
+  StreamTarget target_{};
 };
 }  // namespace
 
-std::unique_ptr<TargetFollower> follow_joints(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_joints(const StreamOptions & options)
 {
   return std::make_unique<JointFollower>(options);
 }
 
-std::unique_ptr<TargetFollower> follow_poses(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_poses(const StreamOptions & options)
 {
   return std::make_unique<PoseFollower>(options);
 }
 
-std::unique_ptr<TargetFollower> follow_twists(const TeleoperationOptions & options)
+std::unique_ptr<TargetFollower> follow_twists(const StreamOptions & options)
 {
   return std::make_unique<TwistFollower>(options);
 }

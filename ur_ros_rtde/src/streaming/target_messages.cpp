@@ -1,4 +1,4 @@
-#include "teleoperation/target_messages.hpp"
+#include "ur_ros_rtde/target_messages.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 namespace ur_ros_rtde {
 namespace {
 /// The target, or the error of the check.
-Expected<TeleopTarget> target_if_valid(const Check & check, const std::vector<double> & values,
+Expected<StreamTarget> target_if_valid(const Check & check, const std::vector<double> & values,
                                        bool in_tool = false)
 {
   if (!check.ok()) {
     return tl::unexpected(*check.error());
   }
-  TeleopTarget target;
+  StreamTarget target;
   std::copy_n(values.begin(), target.values.size(), target.values.begin());
   target.in_tool_frame = in_tool;
   return target;
@@ -29,7 +29,7 @@ Status check_frame(const std::string & frame_id, std::string_view frames, bool k
 }
 }  // namespace
 
-Expected<TeleopTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
+Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
 {
   Check check;
   check.that(message.position.size() == message.name.size(),
@@ -52,7 +52,7 @@ Expected<TeleopTarget> joint_target(const sensor_msgs::msg::JointState & message
   return target_if_valid(check, positions);
 }
 
-Expected<TeleopTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
+Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
 {
   const std::string & frame = message.header.frame_id;
   if (Status known = check_frame(frame, "base", frame.ends_with("base")); !known) {
@@ -63,7 +63,7 @@ Expected<TeleopTarget> pose_target(const geometry_msgs::msg::PoseStamped & messa
   return target_if_valid(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
 }
 
-Expected<TeleopTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
+Expected<StreamTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
 {
   const std::string & frame = message.header.frame_id;
   const bool in_tool = frame.ends_with("tool0_controller");

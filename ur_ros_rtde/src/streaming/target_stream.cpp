@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ur_ros_rtde/streaming.hpp"
+
+namespace ur_ros_rtde {
+namespace {
+
+/// Weight of the newest interval in the smoothed period.
+constexpr double period_weight = 0.2;
+/// Of the control period: a longer gap between two packages counts as this long.
+constexpr double max_cycles = 2.0;
+
+double seconds(std::chrono::steady_clock::duration duration)
+{
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+double TargetPeriod::next(double interval, double timeout)
+{
+  // Unknown at the first target, and uncertain at the second.
+  period_ = period_ && interval <= timeout ? *period_ + period_weight * (interval - *period_) : 0.5 * timeout;
+  return *period_;
+}
+
+TargetStream::TargetStream(Run & run, std::unique_ptr<TargetFollower> follower, const StreamOptions & options)
+    : run_(run),
+      own_follower_(std::move(follower)),
+      follower_(*own_follower_),
+      options_(options),
+      cycle_(run.robot().cycle_time()),
+      sample_(run.state())
+{
+  follower_.begin(sample_, cycle_, run.robot().limits());
+}
+
+TargetStream::TargetStream(Run & run, TargetFollower & follower, const StreamOptions & options)
+    : run_(run),
+      follower_(follower),
+      options_(options),
+      cycle_(run.robot().cycle_time()),
+      sample_(run.state())
+{
+  follower_.begin(sample_, cycle_, run.robot().limits());
+}
+
+std::optional<StopReason> TargetStream::wait()
+{
+  const double before = sample_.controller_time;
+  auto why = run_.next(sample_);
+  elapsed_ = std::clamp(sample_.controller_time - before, 0.0, max_cycles * cycle_);
+  return why;
+}
+
+Status TargetStream::set(const StreamTarget & target)
+{
+  const double interval = seconds(Clock::now() - last_target_);
+  return set(target, period_.next(interval, options_.timeout));
+}
+
+Status TargetStream::set(const StreamTarget & target, double period)
+{
+  last_target_ = Clock::now();
+  has_target_ = true;
+  return follower_.set_target(target, period);
+}
+
+Status TargetStream::send()
+{
+  if (seconds(Clock::now() - last_target_) > options_.timeout) {
+    return failure(ErrorCode::timeout,
+                   fmt::format("there has been no target for {:.3g} s", options_.timeout));
+  }
+  return has_target_ ? follower_.advance(run_, sample_, elapsed_) : Status();
+}
+
+}  // namespace ur_ros_rtde
