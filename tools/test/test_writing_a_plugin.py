@@ -60,6 +60,11 @@ def test_the_extension_runs_on_the_controller(workspace):
     assert "success: true" in text and re.search(r"position: 0\.3\b", text), text
 
 
+def test_the_written_tests_pass(workspace):
+    text = output(workspace, "python3 -m pytest")
+    assert re.search(r"\b10 passed\b", text) and "failed" not in text, text
+
+
 def test_the_new_plugins_are_listed(workspace):
     listed = output(workspace, "ur plugins\n").splitlines()
     for plugin, package, description in (

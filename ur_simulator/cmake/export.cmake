@@ -1,6 +1,8 @@
 # Exports the targets: as an ament package if ament_cmake is available, as a plain CMake package otherwise.
 find_package(ament_cmake QUIET)
 if(ament_cmake_FOUND)
+  find_package(ament_cmake_python REQUIRED)
+  ament_python_install_package(ur_simulator PACKAGE_DIR python/ur_simulator)
   ament_export_targets(ur_simulatorTargets HAS_LIBRARY_TARGET NAMESPACE ur_simulator::)
   ament_export_dependencies(nlohmann_json)
   ament_package()

@@ -6,6 +6,7 @@ import os
 import pathlib
 import queue
 import random
+import shutil
 import socket
 import subprocess
 import threading
@@ -14,6 +15,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 CONTROL_PORT = 30099
 _START_TIMEOUT = 30.0  # s; the program takes 0.1 s on an idle machine
+_AT_REST = 0.01  # rad/s, more than the noise of the sensors
 _PROGRAM_VARIABLE = "UR_SIMULATOR_PROGRAM"
 
 
@@ -22,13 +24,17 @@ class SimulatorError(RuntimeError):
 
 
 def program() -> pathlib.Path:
-    """Returns the simulator program of this package, or the one that the environment variable UR_SIMULATOR_PROGRAM names."""
+    """Returns the simulator program that the environment variable UR_SIMULATOR_PROGRAM names, else that of this package, else the one
+    in PATH."""
     chosen = os.environ.get(_PROGRAM_VARIABLE)
     path = pathlib.Path(chosen) if chosen else pathlib.Path(__file__).parent / "bin" / "ur_simulator"
-    if not path.is_file():
+    if path.is_file():
+        return path
+    installed = None if chosen else shutil.which("ur_simulator")
+    if installed is None:
         raise SimulatorError(f"the simulator program {path} does not exist: install the package ur-simulator, or set "
                              f"{_PROGRAM_VARIABLE}")
-    return path
+    return pathlib.Path(installed)
 
 
 def _random_loopback_address() -> str:
@@ -84,6 +90,10 @@ class SimulatedRobot:
     def state(self) -> Dict[str, Any]:
         """Returns the state of the robot: modes, joints, TCP, IO, program (docs/use/simulator.md)."""
         return self.control("state")["state"]
+
+    def is_at_rest(self) -> bool:
+        """Returns whether no joint moves."""
+        return all(abs(velocity) < _AT_REST for velocity in self.state()["actual"]["velocity"])
 
     def wait_for(self, condition: Callable[[Dict[str, Any]], bool], timeout: float = 10.0) -> Dict[str, Any]:
         """Returns the first state that meets the condition. `timeout` is in seconds of simulated time, so that a busy

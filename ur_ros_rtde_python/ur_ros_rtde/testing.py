@@ -1,0 +1,177 @@
+"""pytest fixtures for tests of commands: a simulated robot, its driver, and the arm in Python. In a test module:
+
+    pytest_plugins = ["ur_ros_rtde.testing"]
+
+
+    def test_wag(arm, simulator):
+        arm.wag(angle=0.2)
+        assert simulator.is_at_rest()
+
+Simulator and driver are those of the test module, in a ROS domain and on an address of their own. A fixture of the module with the name
+robot_model, simulator_options or driver_parameters takes the place of the one here:
+
+    @pytest.fixture(scope="module")
+    def driver_parameters():
+        return ["plugins:=[move_j,wag]"]
+"""
+
+import contextlib
+import fcntl
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from types import TracebackType
+
+import pytest
+from ament_index_python import get_package_prefix
+from ur_simulator import SimulatedRobot, SimulatorError
+
+from .errors import CommandFailed, Rejected
+from .robot import Robot
+
+HOME = (0.0, -1.57, 1.57, -1.57, -1.57, 0.0)  # rad
+_LAST_DOMAIN = 101  # ports of higher domains may be ephemeral ports of the system
+_READY_TIMEOUT = 60.0  # s; the driver takes 0.3 s on an idle machine
+_EXIT_TIMEOUT = 15.0  # s
+# A controller unlocks a protective stop after 5 s.
+_OPTIONS = ("--recovery-time-factor", "0.02")
+# A test is not about the punctuality of its host.
+_PARAMETERS = ("silence_limit:=2.0", "watchdog_frequency:=2.0")
+
+
+class Driver:
+    """A running driver. `parameters`: "name:=value". It is a context manager; stop() ends the program.
+
+    `lines` is what it has printed."""
+
+    def __init__(self, address: str, *parameters: str, namespace: str = ""):
+        program = pathlib.Path(get_package_prefix("ur_ros_rtde"), "lib", "ur_ros_rtde", "driver")
+        arguments = [str(program), "--ros-args"]
+        for parameter in (f"robot_ip:={address}", *parameters):
+            arguments += ["-p", parameter]
+        if namespace:
+            arguments += ["-r", f"__ns:=/{namespace.strip('/')}"]
+        self.lines: list[str] = []
+        self._process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as output:
+            for line in output:
+                self.lines.append(line.rstrip("\n"))
+
+    @property
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    def output(self) -> str:
+        return "\n".join(self.lines)
+
+    def kill(self) -> None:
+        """Ends the program at once, as a crash does: the watchdog of the control program stops the arm."""
+        self._process.kill()
+        self._process.wait()
+
+    def stop(self) -> None:
+        """Ends the program as Ctrl-C does. Safe to call again."""
+        if self.is_running:
+            self._process.send_signal(signal.SIGINT)
+            try:
+                self._process.wait(_EXIT_TIMEOUT)
+            except subprocess.TimeoutExpired:
+                self.kill()
+        self._reader.join()
+
+    def __enter__(self) -> "Driver":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.stop()
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[int]:
+    """A ROS domain that no other test on this machine uses, as ROS_DOMAIN_ID of this process and its children."""
+    folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
+    folder.mkdir(exist_ok=True)
+    for number in range(1, _LAST_DOMAIN + 1):
+        with (folder / str(number)).open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            before = os.environ.get("ROS_DOMAIN_ID")
+            os.environ["ROS_DOMAIN_ID"] = str(number)
+            try:
+                yield number
+            finally:
+                if before is None:
+                    del os.environ["ROS_DOMAIN_ID"]
+                else:
+                    os.environ["ROS_DOMAIN_ID"] = before
+            return
+    raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use by other tests")
+
+
+@pytest.fixture(scope="module")
+def robot_model() -> str:
+    return "ur10e"
+
+
+@pytest.fixture(scope="module")
+def simulator_options() -> Sequence[str]:
+    """Options of the simulator program, such as "--powered-off"."""
+    return ()
+
+
+@pytest.fixture(scope="module")
+def driver_parameters() -> Sequence[str]:
+    """Parameters of the driver, such as "on_busy:=preempt"."""
+    return ()
+
+
+@pytest.fixture(scope="module")
+def simulator(robot_model: str, simulator_options: Sequence[str]) -> Iterator[SimulatedRobot]:
+    """A simulated robot on an address of its own, powered on with released brakes."""
+    with SimulatedRobot(robot_model, *_OPTIONS, *simulator_options) as robot:
+        yield robot
+
+
+@pytest.fixture(scope="module")
+def driver(simulator: SimulatedRobot, driver_parameters: Sequence[str]) -> Iterator[Driver]:
+    """A driver of the simulated robot."""
+    parameters = (*_PARAMETERS, f"ur_type:={simulator.model}", *driver_parameters)
+    with own_domain(), Driver(simulator.address, *parameters) as running:
+        yield running
+        print(running.output())
+
+
+@pytest.fixture(scope="module")
+def _connected(driver: Driver) -> Iterator[Robot]:
+    with Robot(timeout=_READY_TIMEOUT) as robot:
+        yield robot
+
+
+@pytest.fixture
+def arm(_connected: Robot, driver: Driver, simulator: SimulatedRobot) -> Robot:
+    """The arm, at HOME and ready, without obstacles. A protective stop of the test before is unlocked."""
+    assert driver.is_running, driver.output()
+    for command in ("clear_surfaces", "clear_boxes", "clear_pushes"):
+        simulator.control(command)
+    end = time.monotonic() + _READY_TIMEOUT
+    while True:
+        try:
+            if simulator.state()["safety_mode"] == "PROTECTIVE_STOP":
+                simulator.control("unlock_protective_stop")
+            _connected.move_j(HOME, speed=3.0, acceleration=15.0)
+            return _connected
+        except (Rejected, CommandFailed, SimulatorError) as error:  # the control program may be starting
+            assert time.monotonic() < end, f"the arm does not get ready: {error}\n{driver.output()}"
+            time.sleep(0.05)
