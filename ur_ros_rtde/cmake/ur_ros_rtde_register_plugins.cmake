@@ -1,3 +1,6 @@
+# A source file that each plugin library contains. Installed beside this file.
+set(UR_ROS_RTDE_PLUGIN_ABI "${CMAKE_CURRENT_LIST_DIR}/plugin_abi.cpp")
+
 # ur_ros_rtde_register_plugins(<target> <plugins.xml>)
 #
 # Makes the plugins of the shared library <target> known to the servers of ur_ros_rtde: installs the library into lib,
@@ -12,6 +15,7 @@ function(ur_ros_rtde_register_plugins target description)
   if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${description}")
     message(FATAL_ERROR "ur_ros_rtde_register_plugins: there is no file ${CMAKE_CURRENT_SOURCE_DIR}/${description}")
   endif()
+  target_sources(${target} PRIVATE "${UR_ROS_RTDE_PLUGIN_ABI}")
   install(TARGETS ${target} LIBRARY DESTINATION lib ARCHIVE DESTINATION lib RUNTIME DESTINATION bin)
   install(FILES "${description}" DESTINATION share/${PROJECT_NAME})
 

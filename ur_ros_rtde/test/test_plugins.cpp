@@ -217,11 +217,15 @@ TEST(PluginLibraryTest, CreatesItsPlugin)
   EXPECT_NE(plugin, nullptr);
 }
 
-TEST(PluginLibraryTest, RejectsAnotherAbiVersionAndNamesBoth)
+TEST(PluginLibraryTest, RejectsALibraryThatWasBuiltWithOtherHeaders)
 {
   EXPECT_TRUE(mentions(rejection("wrong_abi", "WrongAbi"),
-                       {"libplugin_wrong_abi.so", "version " + std::to_string(plugin_abi_version + 1),
-                        "version " + std::to_string(plugin_abi_version)}));
+                       {"libplugin_wrong_abi.so", "the headers of another version", "another"}));
+}
+
+TEST(PluginLibraryTest, RejectsALibraryThatDoesNotTellItsHeaders)
+{
+  EXPECT_TRUE(mentions(rejection("no_abi", "NoAbi"), {"libplugin_no_abi.so", "ur_ros_rtde_register_plugins()"}));
 }
 
 TEST(PluginLibraryTest, RejectsAMissingExportAndNamesIt)

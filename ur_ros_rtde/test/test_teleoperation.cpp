@@ -91,6 +91,21 @@ TEST(TwistTargetTest, HasTwoFramesAndMayBeZero)
   EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
 }
 
+TEST(TargetPeriodTest, IsSmoothedAndStartsAnewAfterAPause)
+{
+  TargetPeriod period;
+  constexpr double timeout = 0.1;
+  EXPECT_DOUBLE_EQ(period.next(0.02, timeout), 0.05) << "unknown at the first target";
+  double last = 0.05;
+  for (int i = 0; i < 30; ++i) {
+    const double next = period.next(0.02, timeout);
+    EXPECT_LT(next, last);
+    last = next;
+  }
+  EXPECT_NEAR(last, 0.02, 1e-3);
+  EXPECT_DOUBLE_EQ(period.next(0.2, timeout), 0.05) << "the first one after a pause";
+}
+
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)
 {
   const auto follower = follow_twists({});

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -11,9 +10,6 @@ namespace ur_ros_rtde {
 
 class CommandHost;
 class DashboardHost;
-
-/// Incremented when plugins that were built against older headers cannot work anymore.
-constexpr std::uint32_t plugin_abi_version = 6;
 
 /// The interface of a plugin of command_server. Derive from Command<A> (command.hpp) unless the plugin needs
 /// an action server of its own kind.
@@ -48,10 +44,9 @@ class DashboardPlugin {
   virtual void stop_action_server() = 0;
 };
 
-/// How a library describes one of its plugins. The host reads only `abi_version` until it has found that the
-/// version is its own.
+/// How a library describes one of its plugins. The host reads it after it has found that the library was built
+/// with the host's own headers (cmake/plugin_abi.cmake).
 struct PluginDescriptor {
-  std::uint32_t abi_version;
   const char * name;
   CommandPlugin * (*create_command)();      ///< null for a dashboard plugin
   DashboardPlugin * (*create_dashboard)();  ///< null for a command plugin
@@ -65,9 +60,9 @@ constexpr PluginDescriptor describe(const char * name)
   static_assert(command || std::is_base_of_v<DashboardPlugin, Plugin>,
                 "a plugin derives from Command, DashboardCommand, CommandPlugin or DashboardPlugin");
   if constexpr (command) {
-    return {plugin_abi_version, name, []() -> CommandPlugin * { return new Plugin; }, nullptr};
+    return {name, []() -> CommandPlugin * { return new Plugin; }, nullptr};
   } else {
-    return {plugin_abi_version, name, nullptr, []() -> DashboardPlugin * { return new Plugin; }};
+    return {name, nullptr, []() -> DashboardPlugin * { return new Plugin; }};
   }
 }
 }  // namespace detail

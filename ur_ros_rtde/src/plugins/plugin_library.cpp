@@ -11,6 +11,27 @@ std::string symbol_of(const std::string & type)
   const auto colon = type.rfind(':');
   return "ur_ros_rtde_plugin_" + (colon == std::string::npos ? type : type.substr(colon + 1));
 }
+
+/// Success if a library was built with the headers of this driver.
+Status check_abi(rcpputils::SharedLibrary & library, const std::string & path)
+{
+  constexpr const char * symbol_name = "ur_ros_rtde_plugin_abi";
+  if (!library.has_symbol(symbol_name)) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} has no symbol {}: call ur_ros_rtde_register_plugins() in its CMakeLists.txt, "
+                               "and build it again with this driver",
+                               path, symbol_name));
+  }
+  using Abi = const char * (*)();
+  const std::string abi = reinterpret_cast<Abi>(library.get_symbol(symbol_name))();
+  if (abi != UR_ROS_RTDE_PLUGIN_ABI) {
+    return failure(ErrorCode::exception,
+                   fmt::format("{} was built with the headers of another version of this driver ({}, not {}): "
+                               "build it again with this driver",
+                               path, abi, UR_ROS_RTDE_PLUGIN_ABI));
+  }
+  return {};
+}
 }  // namespace
 
 Expected<rcpputils::SharedLibrary *> PluginLibraries::load(const std::string & path)
@@ -37,6 +58,9 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
   if (!library) {
     return tl::unexpected(library.error());
   }
+  if (Status same = check_abi(**library, entry.library); !same) {
+    return tl::unexpected(same.error());
+  }
   const std::string symbol = symbol_of(entry.type);
   if (!(*library)->has_symbol(symbol)) {
     return failure(
@@ -47,13 +71,6 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
   using Entry = const PluginDescriptor * (*)();
   const auto function = reinterpret_cast<Entry>((*library)->get_symbol(symbol));
   const PluginDescriptor * descriptor = function();
-  if (descriptor == nullptr || descriptor->abi_version != plugin_abi_version) {
-    return failure(
-        ErrorCode::exception,
-        fmt::format("{} was built for version {} of the plugin interface, this is version {}: build "
-                    "it again with this driver",
-                    entry.library, descriptor == nullptr ? 0 : descriptor->abi_version, plugin_abi_version));
-  }
   if (descriptor->name != entry.name) {
     return failure(ErrorCode::exception,
                    fmt::format("{} exports it as \"{}\", but plugins.xml names it \"{}\": use the same name",

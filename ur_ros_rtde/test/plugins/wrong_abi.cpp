@@ -1,9 +1,5 @@
-#include "ur_ros_rtde/plugin.hpp"
-
-// What a library built against headers of another version would export.
-extern "C" const ur_ros_rtde::PluginDescriptor * ur_ros_rtde_plugin_WrongAbi()
+// What a library that was built with other headers exports.
+extern "C" const char * ur_ros_rtde_plugin_abi()
 {
-  static constexpr ur_ros_rtde::PluginDescriptor descriptor{ur_ros_rtde::plugin_abi_version + 1, "wrong_abi",
-                                                            nullptr, nullptr};
-  return &descriptor;
+  return "another";
 }
