@@ -2,7 +2,7 @@
 find_package(ament_cmake QUIET)
 if(ament_cmake_FOUND)
   find_package(ament_cmake_python REQUIRED)
-  ament_python_install_package(ur_simulator PACKAGE_DIR python/ur_simulator)
+  ament_python_install_package(ur_simulator PACKAGE_DIR ${PROJECT_SOURCE_DIR}/python/ur_simulator)
   ament_export_targets(ur_simulatorTargets HAS_LIBRARY_TARGET NAMESPACE ur_simulator::)
   ament_export_dependencies(nlohmann_json)
   ament_package()

@@ -21,7 +21,10 @@ struct StreamOptions {
 
   StopOptions stop_options() const
   {
-    return {.joint_deceleration = deceleration, .linear_deceleration = deceleration};
+    StopOptions options;
+    options.joint_deceleration = deceleration;
+    options.linear_deceleration = deceleration;
+    return options;
   }
 };
 

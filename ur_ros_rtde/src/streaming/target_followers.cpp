@@ -43,7 +43,7 @@ double joint_distance(const Vector6 & a, const Vector6 & b)
 }
 
 /// Largest component of the pose `b` in `a`, m or rad.
-double pose_distance(const Vector6 & a, const Vector6 & b)
+double component_distance(const Vector6 & a, const Vector6 & b)
 {
   return largest(pose_trans(pose_inverse(a), b));
 }
@@ -178,8 +178,8 @@ class PoseFollower : public TargetFollower {
 
   bool moves(const StreamTarget & target, const StreamTarget * before, const Sample & sample) const override
   {
-    return before == nullptr || pose_distance(before->values, target.values) > standstill_step ||
-           pose_distance(sample.actual_tcp_pose, target.values) > standstill_distance;
+    return before == nullptr || component_distance(before->values, target.values) > standstill_step ||
+           component_distance(sample.actual_tcp_pose, target.values) > standstill_distance;
   }
 
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
