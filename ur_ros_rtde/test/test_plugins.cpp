@@ -225,7 +225,8 @@ TEST(PluginLibraryTest, RejectsALibraryThatWasBuiltWithOtherHeaders)
 
 TEST(PluginLibraryTest, RejectsALibraryThatDoesNotTellItsHeaders)
 {
-  EXPECT_TRUE(mentions(rejection("no_abi", "NoAbi"), {"libplugin_no_abi.so", "ur_ros_rtde_register_plugins()"}));
+  EXPECT_TRUE(
+      mentions(rejection("no_abi", "NoAbi"), {"libplugin_no_abi.so", "ur_ros_rtde_register_plugins()"}));
 }
 
 TEST(PluginLibraryTest, RejectsAMissingExportAndNamesIt)

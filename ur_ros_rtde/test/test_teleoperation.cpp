@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/target_messages.hpp"
-#include "ur_ros_rtde/check.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -74,7 +74,7 @@ class VacuumPick : public ur_ros_rtde::Command<action::VacuumPick> {
   {
     output_ = declare_number(host, "vacuum_pick.output", "Digital output that switches the vacuum on");
     input_ = declare_number(host, "vacuum_pick.input", "Digital input of the vacuum switch");
-    supervision_.emplace(host, StopOptions{}, [this](const Sample & sample) { return lost(sample); });
+    host_ = &host;
   }
   void on_unload() override { supervision_.reset(); }
 
@@ -89,35 +89,41 @@ class VacuumPick : public ur_ros_rtde::Command<action::VacuumPick> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    if (Outcome touched = run.call<MoveUntilForce>("move_until_force", approach(goal, run.state())); !touched) {
+    if (Outcome touched = run.call<MoveUntilForce>("move_until_force", approach(goal, run.state()));
+        !touched) {
       return touched;
     }
     if (Outcome on = ur_ros_rtde::set_digital_output(run, output_, true); !on) {
       return on;
     }
     const auto is_held = [&] { return bit(run.state().digital_inputs, input_); };
-    if (Outcome held = run.expect(is_held, 2s, "no vacuum within 2 s: there is no part", ErrorCode::not_reached);
+    if (Outcome held =
+            run.expect(is_held, 2s, "no vacuum within 2 s: there is no part", ErrorCode::not_reached);
         !held) {
       static_cast<void>(ur_ros_rtde::set_digital_output(run, output_, false));
       return held;
     }
+    supervise();
     return goal.lift > 0.0 ? run.call<MoveLRelative>("move_l_relative", lift(goal)) : Outcome::success();
   }
 
-  /// Why the arm has to be stopped. A part is put down by switching the vacuum off.
-  std::optional<Error> lost(const Sample & sample)
+  /// Stops the arm when the part is lost, until it is put down by switching the vacuum off.
+  void supervise()
   {
-    const bool is_held = bit(sample.digital_inputs, input_);
-    was_held_ = bit(sample.digital_outputs, output_) && (was_held_ || is_held);
-    return was_held_ && !is_held
-               ? std::make_optional(Error{ErrorCode::not_reached, "the part was lost: the vacuum switch is off"})
-               : std::nullopt;
+    const auto lost = [this, is_held = true](const Sample & sample) mutable -> std::optional<Error> {
+      is_held = is_held && bit(sample.digital_outputs, output_);
+      if (!is_held || bit(sample.digital_inputs, input_)) {
+        return std::nullopt;
+      }
+      return Error{ErrorCode::not_reached, "the part was lost: the vacuum switch is off"};
+    };
+    supervision_.emplace(*host_, StopOptions{}, lost);
   }
 
   unsigned output_ = 0;
   unsigned input_ = 0;
-  bool was_held_ = false;                   // supervision's thread only
-  std::optional<Supervision> supervision_;  // uses what is above
+  CommandHost * host_ = nullptr;
+  std::optional<Supervision> supervision_;  // since the last pick; uses what is above
 };
 
 UR_ROS_RTDE_EXPORT(VacuumPick, "vacuum_pick")

@@ -63,7 +63,7 @@ class VisualServo : public ur_ros_rtde::Command<action::VisualServo> {
     // The first target may be far away: the arm moves there at its default speed.
     const StreamOptions options{.timeout = 0.5, .max_joint_jump = 0.5, .max_linear_jump = 0.3};
     TargetStream stream(run, ur_ros_rtde::follow_poses(options), options);
-    Measurement seen = newest();  // older than this goal
+    Measurement seen = newest();                               // older than this goal
     double arrival = std::numeric_limits<double>::infinity();  // s of the controller
     while (true) {
       if (auto why = stream.wait()) {

@@ -44,8 +44,8 @@ class DashboardPlugin {
   virtual void stop_action_server() = 0;
 };
 
-/// How a library describes one of its plugins. The host reads it after it has found that the library was built
-/// with the host's own headers (cmake/plugin_abi.cmake).
+/// How a library describes one of its plugins. The host reads it after it has found that the library was
+/// built with the host's own headers (cmake/plugin_abi.cmake).
 struct PluginDescriptor {
   const char * name;
   CommandPlugin * (*create_command)();      ///< null for a dashboard plugin

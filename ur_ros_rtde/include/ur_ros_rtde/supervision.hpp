@@ -12,11 +12,12 @@ namespace ur_ros_rtde {
 /// Watches the robot from a thread of its own, during goals of all commands and between them, as long as it
 /// exists: a part that is lost at the gripper, a door, a sensor. As soon as there is a reason, the arm is
 /// stopped, and the goal that moves it ends with that reason. The next goal may move the arm, also if the
-/// reason persists; it stops the arm again once it has been gone.
+/// reason persists; it stops the arm again once it has been gone. The thread runs with each package: create
+/// the object when there is something to watch.
 ///
 ///     void on_load(CommandHost & host) override
 ///     {
-///       supervision_.emplace(host, StopOptions{}, [this](const Sample & sample) { return part_lost(sample); });
+///       supervision_.emplace(host, StopOptions{}, [this](const Sample & sample) { return lost(sample); });
 ///     }
 ///     void on_unload() override { supervision_.reset(); }
 class Supervision {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "nodes/robot_state_receiver.hpp"
-#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
 
 namespace ur_ros_rtde {

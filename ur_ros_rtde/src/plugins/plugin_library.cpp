@@ -17,18 +17,20 @@ Status check_abi(rcpputils::SharedLibrary & library, const std::string & path)
 {
   constexpr const char * symbol_name = "ur_ros_rtde_plugin_abi";
   if (!library.has_symbol(symbol_name)) {
-    return failure(ErrorCode::exception,
-                   fmt::format("{} has no symbol {}: call ur_ros_rtde_register_plugins() in its CMakeLists.txt, "
-                               "and build it again with this driver",
-                               path, symbol_name));
+    return failure(
+        ErrorCode::exception,
+        fmt::format("{} has no symbol {}: call ur_ros_rtde_register_plugins() in its CMakeLists.txt, "
+                    "and build it again with this driver",
+                    path, symbol_name));
   }
   using Abi = const char * (*)();
   const std::string abi = reinterpret_cast<Abi>(library.get_symbol(symbol_name))();
   if (abi != UR_ROS_RTDE_PLUGIN_ABI) {
-    return failure(ErrorCode::exception,
-                   fmt::format("{} was built with the headers of another version of this driver ({}, not {}): "
-                               "build it again with this driver",
-                               path, abi, UR_ROS_RTDE_PLUGIN_ABI));
+    return failure(
+        ErrorCode::exception,
+        fmt::format("{} was built with the headers of another version of this driver ({}, not {}): "
+                    "build it again with this driver",
+                    path, abi, UR_ROS_RTDE_PLUGIN_ABI));
   }
   return {};
 }

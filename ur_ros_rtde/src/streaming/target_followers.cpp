@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_trajectory/default_speeds.hpp"
 

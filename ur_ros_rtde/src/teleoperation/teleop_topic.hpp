@@ -9,9 +9,9 @@
 #include <string>
 #include <thread>
 
-#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 

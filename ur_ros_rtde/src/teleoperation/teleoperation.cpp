@@ -4,8 +4,7 @@
 
 namespace ur_ros_rtde {
 
-Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options,
-                             const LogFunction & log)
+Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log)
     : joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log),
       poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),
       twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log)

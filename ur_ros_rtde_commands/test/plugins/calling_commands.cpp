@@ -66,7 +66,8 @@ class LeavesTurning : public Command<SpeedJ> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration, 0.0);
+    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration,
+                          0.0);
     constexpr std::chrono::milliseconds turning_time{300};
     if (auto why = run.sleep_for(turning_time)) {
       return *why;

@@ -3,8 +3,7 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from plugin_prefix import environment_of_test_commands
-from robot_fixtures import make_ready
-from support import HOME, NAMES_COMMANDS, start_node, wait_for
+from support import start_node, wait_for
 
 from ur_ros_rtde_msgs.action import SendScript, SpeedJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -19,21 +18,14 @@ def driver(simulator, tmp_path_factory):
     assert environment, "the test commands have not been built"
     plugins = "plugins:=[move_j,move_j_relative,move_l,speed_j,stop,calls_speed_j,calls_move_j_relative,calls_itself," \
               "calls_without_the_arm,leaves_turning,moves_on]"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", plugins, env=environment, arguments=NAMES_COMMANDS)
-    driver.wait_for_output(" all commands:")
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", plugins, env=environment)
     yield driver
     driver.stop()
     print(driver.output())
 
 
-@pytest.fixture
-def robot(driver, client):
-    make_ready(client, joint_positions=HOME)
-    return client
-
-
 def wrist(simulator):
-    return simulator.state()["actual_q"][WRIST]
+    return simulator.state()["actual"]["position"][WRIST]
 
 
 def call(client, name, speed=0.5):

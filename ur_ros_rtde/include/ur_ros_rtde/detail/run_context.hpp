@@ -17,9 +17,9 @@ struct CommandDescription;
 struct RunContext {
   Robot & robot;
   std::shared_ptr<const StopRequest> stop_request;
-  Lease * lease = nullptr;  ///< null: it does not move the arm
+  Lease * lease = nullptr;                       ///< null: it does not move the arm
   const CommandDescription * command = nullptr;  ///< null: teleoperation
-  int depth = 0;  ///< of calls by other commands
+  int depth = 0;                                 ///< of calls by other commands
   /// Of a stop: it has begun already.
   std::optional<std::shared_future<Expected<StopReport>>> stopping{};
   /// Of a stop: the goal that was executed, "/move_j, goal 3f0c12ab". Empty: none.
