@@ -88,4 +88,5 @@ def test_a_protective_stop_during_the_search_aborts_with_its_error_code(robot, s
     wait_for(lambda: simulator.state()["force_mode"], 20.0, "force mode")
     simulator.control("protective_stop", reason="of the test")
     assert goal.result().error_code == ErrorCode.PROTECTIVE_STOP
-    assert ends_at_rest_without_force_mode(simulator)
+    assert simulator.is_at_rest()
+    wait_for(lambda: not simulator.state()["force_mode"], 10.0, "the end of force mode, with the control program")

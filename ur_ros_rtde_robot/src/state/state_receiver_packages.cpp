@@ -15,11 +15,14 @@ constexpr std::chrono::milliseconds reading_time(10);
 
 void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
 {
-  const auto arrival = reader.read(sample);
+  const auto last = std::pair(sample.received, sample.controller_time);
+  sample.received = reader.read(sample);
+  if (std::pair(sample.received, sample.controller_time) == last) {
+    return;  // the first package, which ur_rtde's thread reports after it has been read here
+  }
   ++sample.sequence;
-  sample.received = arrival;
   sample.stamp = std::chrono::system_clock::now() -
-                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - arrival);
+                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - sample.received);
   {
     const std::lock_guard lock(mutex_);
     latest_ = sample;
