@@ -96,28 +96,26 @@ class Driver:
         self.stop()
 
 
-@contextlib.contextmanager
-def own_domain() -> Iterator[int]:
-    """A ROS domain that no other test on this machine uses, as ROS_DOMAIN_ID of this process and its children."""
+def _lock_free_domain(files: contextlib.ExitStack) -> int:
+    """Returns a ROS domain that no other test on this machine uses until `files` are closed."""
     folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
     folder.mkdir(exist_ok=True)
     for number in range(1, _LAST_DOMAIN + 1):
-        with (folder / str(number)).open("w") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                continue
-            before = os.environ.get("ROS_DOMAIN_ID")
-            os.environ["ROS_DOMAIN_ID"] = str(number)
-            try:
-                yield number
-            finally:
-                if before is None:
-                    del os.environ["ROS_DOMAIN_ID"]
-                else:
-                    os.environ["ROS_DOMAIN_ID"] = before
-            return
+        file = files.enter_context((folder / str(number)).open("w"))
+        with contextlib.suppress(OSError):
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return number
     raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use by other tests")
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[int]:
+    """A ROS domain of its own for this process and its children, which other hosts do not see: a goal of a test reaches no robot."""
+    with contextlib.ExitStack() as files, pytest.MonkeyPatch.context() as environment:
+        number = _lock_free_domain(files)
+        environment.setenv("ROS_DOMAIN_ID", str(number))
+        environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        yield number
 
 
 @pytest.fixture(scope="module")

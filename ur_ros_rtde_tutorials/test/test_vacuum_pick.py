@@ -2,7 +2,7 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from support import wait_for
+from support import start_node, wait_for
 from ur_ros_rtde_tutorials.action import VacuumPick
 
 from ur_ros_rtde_msgs.action import MoveJRelative, SetDigitalOutput
@@ -107,3 +107,17 @@ def test_a_protective_stop_during_a_called_command_is_the_reason(robot, simulato
     wait_for(lambda: not simulator.is_at_rest(), 10.0, "the approach")
     simulator.control("protective_stop", reason="of the test")
     assert goal.result().error_code == ErrorCode.PROTECTIVE_STOP
+
+
+def test_a_parameter_out_of_range_leaves_the_plugin_out(addresses, processes):
+    server = processes(start_node("command_server", addresses[3], "plugins:=[stop,vacuum_pick]", "vacuum_pick.output:=30"))
+    line = server.wait_for_output("plugin vacuum_pick of package ur_ros_rtde_tutorials is left out")
+    assert "on_load() threw" in line and "vacuum_pick.output" in line and "30" in line, line
+    assert server.wait_for_output(" commands: ").endswith(" commands: stop")
+
+
+def test_a_misspelled_parameter_prevents_the_start_and_is_named(addresses, processes):
+    server = processes(start_node("command_server", addresses[3], "plugins:=[stop,vacuum_pick]", "vacuum_pick.outptu:=3"))
+    line = server.wait_for_output("vacuum_pick.outptu")
+    assert "vacuum_pick.output" in line.replace("vacuum_pick.outptu", ""), line
+    assert server.wait(15.0) != 0

@@ -159,6 +159,8 @@ class Run {
   CommandPlugin * find_command(const std::string & name) const;
   Outcome execute(const CalledCommand & called);
   Status may_execute(const CalledCommand & called) const;
+  /// Stops everything but the modes that `options` keeps, and waits for standstill.
+  Status stop_except_kept(const StopOptions & options);
   /// Stops what a called command has started and does not leave active.
   Outcome settle(const CalledCommand & called, const Outcome & outcome, Activities active_before);
 

@@ -68,9 +68,11 @@ class TargetPeriod {
   /// s, after a target that arrived `interval` s after the last one. Longer than `timeout`: it is the first
   /// one.
   double next(double interval, double timeout);
+  /// s, what next() has returned last. 0: it was not called.
+  double seconds() const { return period_; }
 
  private:
-  std::optional<double> period_;
+  double period_ = 0.0;
 };
 
 /// The arm follows targets that a command computes or receives while it runs (a camera, a force controller),
@@ -86,7 +88,7 @@ class TargetPeriod {
 ///     }
 ///     return run.stop_motion(options.stop_options());
 ///
-/// Whatever ends the goal, the arm decelerates. After a delay of the host, the motion goes on from the last
+/// However the goal ends, the arm decelerates. After a delay of the host, the motion goes on from the last
 /// command: slower, never faster.
 class TargetStream {
  public:
@@ -112,7 +114,7 @@ class TargetStream {
   using Clock = std::chrono::steady_clock;
 
   Run & run_;
-  const std::unique_ptr<TargetFollower> own_follower_;
+  std::unique_ptr<TargetFollower> own_follower_;
   TargetFollower & follower_;
   const StreamOptions options_;
   const double cycle_;

@@ -11,7 +11,7 @@ namespace ur_ros_rtde {
 
 /// Watches the robot from a thread of its own, during goals of all commands and between them, as long as it
 /// exists: a part that is lost at the gripper, a door, a sensor. As soon as there is a reason, the arm is
-/// stopped, and the goal that moves it ends with that reason. The next goal may move the arm, also if the
+/// stopped, and the goal that moves it ends with that reason. The next goal may move the arm even if the
 /// reason persists; it stops the arm again once it has been gone. The thread runs with each package: create
 /// the object when there is something to watch.
 ///

@@ -113,10 +113,7 @@ Outcome Run::settle(const CalledCommand & called, const Outcome & outcome, Activ
   if (outcome && called.description.traits.leaves_mode_active) {
     options.keep = options.keep | outlasting_modes;
   }
-  if (robot().is_at_rest_except(options.keep)) {
-    return outcome;
-  }
-  if (const auto stopped = context_.robot.pause_motion(*context_.lease, options); !stopped && outcome) {
+  if (const Status stopped = stop_except_kept(options); !stopped && outcome) {
     return Outcome::failure(stopped.error().code,
                             fmt::format("standstill is not confirmed: {}", stopped.error().message));
   }

@@ -322,11 +322,16 @@ Outcome Run::stop_motion(StopOptions options)
     return Outcome::failure(ErrorCode::exception, "a command without Resource::motion has nothing to stop");
   }
   options.keep = robot().activities() & outlasting_modes;
+  return stop_except_kept(options);
+}
+
+Status Run::stop_except_kept(const StopOptions & options)
+{
   if (robot().is_at_rest_except(options.keep)) {
-    return Outcome::success();
+    return {};
   }
   const auto stopped = context_.robot.pause_motion(*context_.lease, options);
-  return stopped ? Outcome::success() : Outcome(stopped.error());
+  return stopped ? Status() : tl::unexpected(stopped.error());
 }
 
 ScriptReport Run::run_script(const std::string & script, ScriptOptions options)

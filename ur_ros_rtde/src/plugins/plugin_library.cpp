@@ -48,6 +48,9 @@ Expected<rcpputils::SharedLibrary *> PluginLibraries::load(const std::string & p
   }
   try {
     auto library = std::make_unique<rcpputils::SharedLibrary>(path);
+    if (Status same = check_abi(*library, path); !same) {
+      return tl::unexpected(same.error());
+    }
     return libraries_.emplace(path, std::move(library)).first->second.get();
   } catch (const std::exception & error) {
     return failure(ErrorCode::exception, fmt::format("its library cannot be loaded: {}", error.what()));
@@ -60,19 +63,16 @@ Expected<const PluginDescriptor *> PluginLibraries::describe(const PluginEntry &
   if (!library) {
     return tl::unexpected(library.error());
   }
-  if (Status same = check_abi(**library, entry.library); !same) {
-    return tl::unexpected(same.error());
-  }
   const std::string symbol = symbol_of(entry.type);
-  if (!(*library)->has_symbol(symbol)) {
+  using Entry = const PluginDescriptor * (*)();
+  const PluginDescriptor * const descriptor =
+      (*library)->has_symbol(symbol) ? reinterpret_cast<Entry>((*library)->get_symbol(symbol))() : nullptr;
+  if (descriptor == nullptr) {
     return failure(
         ErrorCode::exception,
         fmt::format("{} has no symbol {}: UR_ROS_RTDE_EXPORT({}, \"{}\") is missing there", entry.library,
                     symbol, symbol.substr(sizeof("ur_ros_rtde_plugin_") - 1), entry.name));
   }
-  using Entry = const PluginDescriptor * (*)();
-  const auto function = reinterpret_cast<Entry>((*library)->get_symbol(symbol));
-  const PluginDescriptor * descriptor = function();
   if (descriptor->name != entry.name) {
     return failure(ErrorCode::exception,
                    fmt::format("{} exports it as \"{}\", but plugins.xml names it \"{}\": use the same name",

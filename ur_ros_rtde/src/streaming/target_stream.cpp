@@ -23,19 +23,15 @@ double seconds(std::chrono::steady_clock::duration duration)
 double TargetPeriod::next(double interval, double timeout)
 {
   // Unknown at the first target, and uncertain at the second.
-  period_ = period_ && interval <= timeout ? *period_ + period_weight * (interval - *period_) : 0.5 * timeout;
-  return *period_;
+  const bool first = period_ == 0.0 || interval > timeout;
+  period_ = first ? 0.5 * timeout : period_ + period_weight * (interval - period_);
+  return period_;
 }
 
 TargetStream::TargetStream(Run & run, std::unique_ptr<TargetFollower> follower, const StreamOptions & options)
-    : run_(run),
-      own_follower_(std::move(follower)),
-      follower_(*own_follower_),
-      options_(options),
-      cycle_(run.robot().cycle_time()),
-      sample_(run.state())
+    : TargetStream(run, *follower, options)
 {
-  follower_.begin(sample_, cycle_, run.robot().limits());
+  own_follower_ = std::move(follower);
 }
 
 TargetStream::TargetStream(Run & run, TargetFollower & follower, const StreamOptions & options)

@@ -106,8 +106,8 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
   const double interval = seconds(next.arrived - newest_.arrived);
   const bool first = newest_.number == 0 || interval > options_.timeout;
   next.session = newest_.session + (first ? 1 : 0);
-  next.periods = newest_.periods;
-  next.period = next.periods.next(interval, options_.timeout);
+  next.period = newest_.period;
+  next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
   const bool goes_on = target && newest_.moves && next.moves && publisher == newest_.publisher;
@@ -222,7 +222,7 @@ Status TeleopTopic::set_target(TargetStream & stream, const Message & message, s
   if (const Status timely = check_timeout(message, session); !timely) {
     return timely;
   }
-  return message.target ? stream.set(*message.target, message.period)
+  return message.target ? stream.set(*message.target, message.period.seconds())
                         : tl::unexpected(message.target.error());
 }
 

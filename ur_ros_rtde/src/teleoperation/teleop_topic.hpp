@@ -49,8 +49,7 @@ class TeleopTopic {
     Clock::time_point arrived{};
     std::uint64_t number = 0;
     std::uint64_t session = 0;  ///< number of the session that the message belongs to
-    double period = 0.0;        ///< s between messages, smoothed
-    TargetPeriod periods{};
+    TargetPeriod period{};      ///< between messages
     rcl_cxx::PublisherId publisher{};
     bool moves = false;      ///< commands a motion
     bool may_start = false;  ///< its session, if it has not been started yet

@@ -21,8 +21,8 @@ class CallsSpeedJ : public Command<SpeedJ> {
   Outcome run(const Goal & goal, Run & run) override { return run.call<SpeedJ>("speed_j", goal); }
 };
 
-/// Calls the command that `script` names, with a goal of MoveJRelative. Then turns wrist 3 back, whatever the
-/// outcome was, which is the outcome of this command.
+/// Calls the command that `script` names, with a goal of MoveJRelative, and then turns wrist 3 back. Its
+/// outcome is that of the called command.
 class CallsMoveJRelative : public Command<SendScript> {
   Outcome run(const Goal & goal, Run & run) override
   {
@@ -57,7 +57,7 @@ class CallsWithoutTheArm : public Command<SendScript> {
   }
 };
 
-/// Calls speed_j for a time, without waiting for its end by itself: leaves it turning in `run`, and fails.
+/// Turns joints for a time, and fails while they turn.
 class LeavesTurning : public Command<SpeedJ> {
   StopOptions stop_options(const Goal & goal) const override
   {

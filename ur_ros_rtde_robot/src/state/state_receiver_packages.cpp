@@ -21,8 +21,9 @@ void StateReceiver::Impl::publish(Sample & sample, const SampleReader & reader)
     return;  // the first package, which ur_rtde's thread reports after it has been read here
   }
   ++sample.sequence;
-  sample.stamp = std::chrono::system_clock::now() -
-                 std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - sample.received);
+  sample.stamp =
+      std::chrono::system_clock::now() -
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - sample.received);
   {
     const std::lock_guard lock(mutex_);
     latest_ = sample;
