@@ -38,9 +38,9 @@ def has_driver_back(arm):
     try:
         arm.reupload_script()
     except Rejected as rejected:
-        if rejected.name != "PROGRAM_STOPPED":  # a protective stop, because the second program came too late
+        if rejected.name not in ("PROGRAM_STOPPED", "NOT_READY"):  # a protective stop, because the second program came too late
             raise
-        return False  # the second program has not ended yet
+        return False  # the second program has not ended, or the driver is starting its own
     return True
 
 
