@@ -184,6 +184,31 @@ TEST_F(ClientLostTest, IsReportedOnceForEachOfItsGoalsAndNotForThoseOfOthers)
   EXPECT_THAT(lost(), Not(Contains(kept)));
 }
 
+TEST_F(ClientLostTest, IsReportedAfterTheEndOfAGoalThatKeepsWatchingIt)
+{
+  rcl_cxx::ActionServerOptions options;
+  options.result_timeout = std::chrono::milliseconds(100);
+  serve(options);
+  auto other = std::make_unique<OtherProcess>();
+  const auto watched = other->send_accepted_goal();
+  const auto released = other->send_accepted_goal();
+  for (const std::size_t goal : {0U, 1U}) {
+    accepted(goal)->keep_watching_client();
+    ASSERT_TRUE(accepted(goal)->succeed());
+  }
+  {
+    const std::lock_guard lock(mutex);
+    handles.pop_back();
+  }
+  EXPECT_TRUE(eventually([&] {
+    return get(client->async_cancel_goal(watched)).code == CancelCode::unknown_goal;
+  })) << "the result expires";
+  EXPECT_THAT(lost(), IsEmpty());
+  other.reset();
+  EXPECT_TRUE(eventually([&] { return is_lost(watched); }));
+  EXPECT_FALSE(is_lost(released)) << "its handle does not exist anymore";
+}
+
 TEST_F(ClientLostTest, DoesNotLeaveGoalRunningThatItSentAsItEnded)
 {
   serve();

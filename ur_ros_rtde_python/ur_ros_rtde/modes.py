@@ -30,8 +30,7 @@ class Modes:
     def force_mode(self, *values: Any, **fields: Any) -> Iterator[None]:
         """Axes of the arm are compliant while other commands move it.
 
-        If the program is killed, force mode lasts until `stop()` or a failed motion. Use `arm.start.force_mode(...)` as a context manager
-        if the arm does not move by other commands: it ends with the program.
+        Ends with this program, even if it is killed. The mode of `outlives_client=True` lasts until `stop()` or a failed motion.
         """
         self._commands.force_mode_start(*values, **fields)
         try:

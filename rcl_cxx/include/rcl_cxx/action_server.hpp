@@ -45,7 +45,8 @@ struct ActionServerCallbacks {
   std::function<void(ServerGoalHandle &)> on_canceling{};
   /// Called once when the client of an active goal has disappeared: its process has ended, or it has
   /// destroyed its action client. A process that was killed disappears when the lease of its participant
-  /// expires. The goal remains active. Clients are watched only if this is set.
+  /// expires. The goal remains active. Clients are watched only if this is set; see also
+  /// ServerGoalHandle::keep_watching_client().
   std::function<void(ServerGoalHandle &)> on_client_lost{};
   /// Called when a goal that handle_goal accepted is not executed: the acceptance could not be delivered to
   /// the client.

@@ -2,20 +2,29 @@
 #include "executor/timer_impl.hpp"
 #include "node/node_impl.hpp"
 
-/// Checks whether the clients of active goals still exist. In the executor's thread.
+/// Checks whether the clients of goals still exist. In the executor's thread.
 namespace rcl_cxx::detail {
-void ActionServerImpl::watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request)
+void ActionServerImpl::watch_client(const std::shared_ptr<ServerGoalImpl> & goal,
+                                    const rmw_request_id_t & request)
 {
   if (!client_timer_) {
     return;
   }
   {
     const std::lock_guard lock(mutex_);
-    goal.client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
+    watched_goals_.push_back(goal);
+    goal->client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
   }
   if (client_timer_->is_canceled()) {
     client_timer_->reset();
   }
+}
+
+ActionServerImpl::Goals ActionServerImpl::get_watched_goals()
+{
+  const std::lock_guard lock(mutex_);
+  std::erase_if(watched_goals_, [](const auto & goal) { return !goal->client || !goal->needs_client(); });
+  return watched_goals_;
 }
 
 void ActionServerImpl::check_clients()
@@ -23,7 +32,7 @@ void ActionServerImpl::check_clients()
   if (!client_timer_) {
     return;
   }
-  const Goals goals = get_active_goals();
+  const Goals goals = get_watched_goals();
   if (goals.empty()) {
     client_timer_->cancel();
     return;
@@ -44,9 +53,9 @@ void ActionServerImpl::check_clients()
         continue;
       }
       goal->client.reset();
-      handle = goal->handle.lock();
+      handle = goal->needs_client() ? goal->handle.lock() : nullptr;
     }
-    if (handle && handle->is_active()) {
+    if (handle) {
       RCL_CXX_WARN(node()->get_logger(), "{}: goal {}: its client has disappeared", name_,
                    goal->id().short_string());
       call("on_client_lost", goal->id(), [&] { callbacks_.on_client_lost(*handle); });

@@ -123,7 +123,8 @@ class ActionServerImpl : public Waitable {
 
   // Clients, in the executor's thread.
   std::string service_name(const char * service) const { return name_ + "/_action/" + service; }
-  void watch_client(ServerGoalImpl & goal, const rmw_request_id_t & request);
+  void watch_client(const std::shared_ptr<ServerGoalImpl> & goal, const rmw_request_id_t & request);
+  Goals get_watched_goals();
   void check_clients();
 
   const ActionType & type_;
@@ -140,6 +141,7 @@ class ActionServerImpl : public Waitable {
   rcl_action_server_t server_ = rcl_action_get_zero_initialized_server();
   std::map<GoalUUID, std::shared_ptr<ServerGoalImpl>> goals_;
   std::map<GoalUUID, DeferredGoal> deferred_goals_;
+  Goals watched_goals_;  // those whose client is watched, which may outlast goals_
   std::shared_ptr<TimerImpl> expiry_timer_;
   std::shared_ptr<TimerImpl> client_timer_;  // runs while clients are watched
   bool retired_ = false;

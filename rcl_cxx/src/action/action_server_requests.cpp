@@ -138,7 +138,7 @@ void ActionServerImpl::send_acceptance(const rmw_request_id_t & request,
       discard(handle->get_goal_id());
       return;
     }
-    watch_client(*goal, request);
+    watch_client(goal, request);
     run_accepted(handle);  // first: publishing the status must not delay the goal
     {
       const std::lock_guard lock(mutex_);

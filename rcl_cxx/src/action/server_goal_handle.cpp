@@ -57,6 +57,11 @@ std::int64_t ServerGoalHandle::get_goal_stamp() const noexcept
   return impl_->get_goal_stamp();
 }
 
+void ServerGoalHandle::keep_watching_client() noexcept
+{
+  impl_->watches_beyond_end = true;
+}
+
 bool ServerGoalHandle::publish_feedback(const void * feedback) noexcept
 {
   const auto server = impl_->server();

@@ -34,7 +34,14 @@ class ServerGoalImpl {
   GoalStatus get_status() const noexcept { return status_.load(); }
   std::shared_ptr<ActionServerImpl> server() const noexcept { return server_.lock(); }
 
+  /// Whether its client is to be watched. Guarded by the server's mutex.
+  bool needs_client() const noexcept
+  {
+    return !is_terminal(get_status()) || (watches_beyond_end && !handle.expired());
+  }
+
   std::atomic<bool> result_sent{false};
+  std::atomic<bool> watches_beyond_end{false};
 
   // --- guarded by the server's mutex ---
 

@@ -92,6 +92,13 @@ class Command<A>::GoalOfCommand final : public CommandGoal {
  private:
   void check_fields(Check & check) const override { command_.check(message_, check); }
   StopOptions stop_options() const override { return command_.stop_options(message_); }
+  std::optional<bool> outlives_client() const override
+  {
+    if constexpr (requires { message_.outlives_client; }) {
+      return message_.outlives_client;
+    }
+    return std::nullopt;
+  }
   Outcome run_command(const RunContext & context) override
   {
     run_.emplace(context);
@@ -124,9 +131,10 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 {
   description_ = std::make_shared<const CommandDescription>(CommandDescription{
       host, name, host.node().resolve_service_name(name), traits(), script_extension().has_value()});
-  const GoalServer::Description server{rcl_cxx::action_type<A>(), name,
-                                       description_->stops_when_client_lost(),
-                                       description_->traits.preempts_all};
+  GoalServer::Description server{rcl_cxx::action_type<A>(), name, {}, description_->traits.preempts_all};
+  if (description_->stops_when_client_lost()) {
+    server.on_client_lost = [&host](const rcl_cxx::GoalUUID & id) { host.end_modes_of(id); };
+  }
   server_ = std::make_unique<GoalServer>(
       host, server,
       [this](const rcl_cxx::GoalUUID & id, const void * message) {

@@ -17,7 +17,7 @@ struct CommandTraits {
   bool preempts_self = false;
   /// Switches force mode, freedrive or teach mode on or off, which outlasts the goal (freedrive_start): after
   /// success, the mode and the arm are left as they are. What else the goal has started is stopped at its
-  /// end.
+  /// end. If the goal has a field `bool outlives_client` that is false, the mode ends with the client.
   bool leaves_mode_active = false;
   /// Accepts and executes goals in every state of the robot; needs the dashboard server only.
   bool allowed_in_any_state = false;

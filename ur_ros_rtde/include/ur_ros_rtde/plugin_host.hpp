@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <rcl_cxx/node.hpp>
+#include <rcl_cxx/server_goal_handle.hpp>
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 #include <utility>
@@ -63,6 +64,13 @@ class CommandHost : public PluginHost {
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
   /// Number of calls of begin_stop().
   std::uint32_t stops() const { return stops_; }
+  /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
+  /// Replaces the goal before; null: nobody's client does.
+  void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
+  /// A mode that is off has no owner.
+  void forget_owner_of_ended_modes();
+  /// The client of this goal has disappeared.
+  void end_modes_of(const rcl_cxx::GoalUUID & goal);
   /// The commands that Run::call() finds, by name.
   void add_command(const std::string & name, CommandPlugin & command);
   void remove_command(const std::string & name);
@@ -73,6 +81,8 @@ class CommandHost : public PluginHost {
   Robot & robot_;
   Options options_;
   std::atomic<std::uint32_t> stops_ = 0;
+  std::mutex mode_owner_mutex_;
+  std::shared_ptr<rcl_cxx::ServerGoalHandle> mode_owner_;
   mutable std::mutex commands_mutex_;
   std::map<std::string, CommandPlugin *> commands_;
 };

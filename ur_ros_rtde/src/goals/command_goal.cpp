@@ -215,6 +215,7 @@ Outcome CommandGoal::execute()
     if (Status acquired = acquire(); !acquired) {
       return acquired;
     }
+    command_->host.forget_owner_of_ended_modes();
     {
       const std::lock_guard lock(lease_mutex_);
       active_before_ = robot().activities() & outlasting_modes;
@@ -224,7 +225,25 @@ Outcome CommandGoal::execute()
     }
     return run_command(make_context());
   });
-  return settle(explain(std::move(outcome), begin));
+  return leave_modes(settle(explain(std::move(outcome), begin)));
+}
+
+Outcome CommandGoal::leave_modes(const Outcome & outcome)
+{
+  const auto outlives = outlives_client();
+  if (!outcome || !outlives || !command_->traits.leaves_mode_active || !command_->stops_when_client_lost()) {
+    return outcome;
+  }
+  if (*outlives) {
+    command_->host.set_mode_owner(nullptr);
+    return outcome;
+  }
+  shared_handle()->keep_watching_client();
+  command_->host.set_mode_owner(shared_handle());
+  if (stop_request().reason().value_or(Error{}).code == ErrorCode::client_lost) {
+    command_->host.end_modes_of(id());  // it had no owner yet
+  }
+  return Outcome::success(outcome.message() + "; ends with its client (outlives_client: false)");
 }
 
 Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const

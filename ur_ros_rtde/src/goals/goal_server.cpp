@@ -59,8 +59,11 @@ GoalServer::GoalServer(PluginHost & host, const Description & description, MakeG
       goal->release();
     }
   };
-  if (description.stops_when_client_lost) {
-    callbacks.on_client_lost = [this](Handle & handle) { stop(handle.get_goal_id(), client_lost()); };
+  if (description.on_client_lost) {
+    callbacks.on_client_lost = [this, tell_host = description.on_client_lost](Handle & handle) {
+      stop(handle.get_goal_id(), client_lost());
+      tell_host(handle.get_goal_id());
+    };
   }
   callbacks.fill_missing_result = [write = std::move(write_outcome)](rcl_cxx::GoalStatus status,
                                                                      void * result) {

@@ -32,6 +32,37 @@ std::shared_future<Expected<StopReport>> CommandHost::begin_stop(const StopOptio
   return robot_.begin_stop(options, why);
 }
 
+void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)
+{
+  const std::lock_guard lock(mode_owner_mutex_);
+  mode_owner_ = std::move(goal);
+}
+
+void CommandHost::forget_owner_of_ended_modes()
+{
+  const std::lock_guard lock(mode_owner_mutex_);
+  if (!robot_.activities().contains_any(outlasting_modes)) {
+    mode_owner_.reset();
+  }
+}
+
+void CommandHost::end_modes_of(const rcl_cxx::GoalUUID & goal)
+{
+  forget_owner_of_ended_modes();
+  {
+    const std::lock_guard lock(mode_owner_mutex_);
+    if (!mode_owner_ || mode_owner_->get_goal_id() != goal) {
+      return;
+    }
+    mode_owner_.reset();
+  }
+  const Error why{ErrorCode::client_lost,
+                  "the client that switched on the mode of the arm has disappeared: keep its action client alive, "
+                  "or set outlives_client"};
+  RCL_CXX_WARN(node().get_logger(), "the arm is stopped: {}", why.message);
+  begin_stop({}, why);
+}
+
 void CommandHost::add_command(const std::string & name, CommandPlugin & command)
 {
   const std::lock_guard lock(commands_mutex_);

@@ -11,10 +11,10 @@ from robot_fixtures import make_ready
 from support import FEW_PLUGINS, HOME, REAL_TIME_FACTOR, Client, Process, Simulator, start_node, wait_for
 from unique_identifier_msgs.msg import UUID
 
-from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.action import MoveJ, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-PLUGINS = FEW_PLUGINS
+PLUGINS = "plugins:=[move_j,stop,force_mode_start,force_mode_stop]"
 TARGET = HOME[0] + 2.0  # rad, a motion of 10 s at the speed of move_j_client.py
 
 
@@ -86,6 +86,79 @@ def test_continues_the_goal_when_another_client_exits(robot, simulator, processe
     idle.signal(signal.SIGTERM)
     idle.wait(10.0)
     goal.succeeded()
+
+
+MODE_CLIENT = """
+import sys
+import rclpy
+from rclpy.action import ActionClient
+from ur_ros_rtde_msgs.action import ForceMode
+rclpy.init()
+node = rclpy.create_node("mode_client")
+client = ActionClient(node, ForceMode, "force_mode_start")
+assert client.wait_for_server(timeout_sec=20.0)
+compliant = [False, False, True, False, False, False]
+sent = client.send_goal_async(ForceMode.Goal(compliant=compliant, outlives_client=sys.argv[1:] == ["outlives"]))
+rclpy.spin_until_future_complete(node, sent)
+result = sent.result().get_result_async()
+rclpy.spin_until_future_complete(node, result)
+assert result.result().result.success, result.result().result.message
+print("force mode", flush=True)
+rclpy.spin(node)
+"""
+MODE_ENDED = "the client that switched on the mode of the arm has disappeared"
+
+
+@pytest.fixture
+def start_mode(robot, simulator, processes):
+    """Returns a function that starts a client which leaves force mode on."""
+
+    def start(*arguments):
+        client = processes(Process([sys.executable, "-c", MODE_CLIENT, *arguments]))
+        client.wait_for_output("force mode", 30.0)
+        assert simulator.state()["force_mode"]
+        return client
+
+    return start
+
+
+def end(client):
+    client.signal(signal.SIGTERM)
+    client.wait(10.0)
+
+
+def wait_until_mode_is_ended(driver, simulator, log):
+    """Waits until the driver has ended force mode, and asserts that it did so once since line `log` of its output."""
+    wait_for(lambda: not simulator.state()["force_mode"], 15.0, "the end of force mode")
+    driver.wait_for_output(MODE_ENDED)
+    assert sum(MODE_ENDED in line for line in driver.lines[log:]) == 1
+
+
+def test_a_mode_that_outlasts_its_goal_ends_with_its_client(robot, simulator, driver, start_mode):
+    log = len(driver.lines)
+    end(start_mode())
+    wait_until_mode_is_ended(driver, simulator, log)
+    make_ready(robot)
+
+
+def test_a_mode_outlives_its_client_on_request(robot, simulator, driver, start_mode):
+    log = len(driver.lines)
+    end(start_mode("outlives"))
+    end(start_mode())
+    wait_until_mode_is_ended(driver, simulator, log)
+    make_ready(robot)
+
+
+def test_a_mode_does_not_end_with_the_client_of_an_earlier_one(robot, simulator, driver, start_mode):
+    log = len(driver.lines)
+    earlier = start_mode()
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    later = start_mode("outlives")
+    end(earlier)
+    end(start_mode())
+    wait_until_mode_is_ended(driver, simulator, log)
+    assert later.running()
+    make_ready(robot)
 
 
 IDLE_CLIENT = """

@@ -151,7 +151,7 @@ def test_the_arm_yields_to_a_push_in_freedrive_and_is_at_rest_afterwards(robot, 
 
 
 @pytest.mark.parametrize("start,stop,action", [("freedrive_start", "freedrive_stop", Freedrive),
-                                               ("teach_mode_start", "end_teach_mode", Trigger)])
+                                               ("teach_mode_start", "end_teach_mode", TeachMode)])
 def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action):
     modes = robot.subscribe(ActiveModes, "active_modes", transient_local=True)
     robot.send(action, start).succeeded()

@@ -28,6 +28,7 @@ class TypedGoalHandle {
   bool is_active() const { return handle_->is_active(); }
   bool is_canceling() const { return handle_->is_canceling(); }
   std::int64_t get_goal_stamp() const { return handle_->get_goal_stamp(); }
+  void keep_watching_client() { handle_->keep_watching_client(); }
 
   bool publish_feedback(const typename A::Feedback & feedback)
   {

@@ -49,6 +49,8 @@ class CommandGoal : public Goal {
  protected:
   virtual void check_fields(Check & check) const = 0;
   virtual StopOptions stop_options() const = 0;
+  /// The field of the goal; empty if there is none: what its modes end with is not changed.
+  virtual std::optional<bool> outlives_client() const = 0;
   /// The command itself. May throw.
   virtual Outcome run_command(const RunContext & context) = 0;
 
@@ -69,6 +71,8 @@ class CommandGoal : public Goal {
   Outcome explain(Outcome outcome, const Generation & begin) const;
   /// Stops what the goal has started and does not leave active.
   Outcome settle(const Outcome & outcome);
+  /// Lets the modes that the goal leaves on end with its client, if it asks for that.
+  Outcome leave_modes(const Outcome & outcome);
   /// Modes are active that were not before.
   bool started_modes() const;
 

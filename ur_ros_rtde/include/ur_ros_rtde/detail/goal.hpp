@@ -74,6 +74,7 @@ class Goal : public std::enable_shared_from_this<Goal> {
   PluginHost & host() const { return host_; }
   const std::shared_ptr<StopRequest> & shared_stop_request() const { return stop_request_; }
   Handle & handle() const { return *handle_; }
+  const std::shared_ptr<Handle> & shared_handle() const { return handle_; }
   /// `result`: an A::Result of the action.
   void send(const Outcome & outcome, const void * result);
   void warn(const std::string & text) const;

@@ -19,8 +19,8 @@ class GoalServer {
   struct Description {
     const rcl_cxx::ActionType & type;
     std::string name;  ///< of the action, relative
-    /// Goals are told to end when the client that sent them disappears.
-    bool stops_when_client_lost = false;
+    /// Called when the client of a goal disappears; then the goal is told to end. Empty: it goes on.
+    std::function<void(const rcl_cxx::GoalUUID &)> on_client_lost;
     /// The requests are served by the thread that serves cancel requests and runs no other code of plugins.
     bool is_stop = false;
   };

@@ -26,7 +26,7 @@ void check_force_mode(const ur_ros_rtde_msgs::action::ForceMode::Goal & goal, bo
   for (std::size_t i = 0; i < goal.limits.size(); ++i) {
     check.above_zero(fmt::format("limits[{}]", i), goal.limits[i], max_limit);
   }
-  check_duration(check, goal.duration, ends_with_goal);
+  check_end_of_mode(check, goal, ends_with_goal);
 }
 
 Mode start_force_mode(Run & run, const ur_ros_rtde_msgs::action::ForceMode::Goal & goal)

@@ -18,7 +18,7 @@ void check_freedrive(const ur_ros_rtde_msgs::action::Freedrive::Goal & goal, boo
   if (!is_zero(goal.feature.orientation)) {
     check.frame("feature", goal.feature);
   }
-  check_duration(check, goal.duration, ends_with_goal).polyscope(10);
+  check_end_of_mode(check, goal, ends_with_goal).polyscope(10);
 }
 
 Mode start_freedrive(Run & run, const ur_ros_rtde_msgs::action::Freedrive::Goal & goal)

@@ -5,7 +5,7 @@
 namespace ur_ros_rtde {
 
 class TeachMode : public Command<ur_ros_rtde_msgs::action::TeachMode> {
-  void check(const Goal & goal, Check & check) const override { check_duration(check, goal.duration, true); }
+  void check(const Goal & goal, Check & check) const override { check_end_of_mode(check, goal, true); }
 
   Outcome run(const Goal & goal, Run & run) override
   {

@@ -1,11 +1,13 @@
-#include <ur_ros_rtde_msgs/action/trigger.hpp>
+#include <ur_ros_rtde_msgs/action/teach_mode.hpp>
 
 #include "force/compliance.hpp"
 
 namespace ur_ros_rtde {
 
-class TeachModeStart : public Command<ur_ros_rtde_msgs::action::Trigger> {
+class TeachModeStart : public Command<ur_ros_rtde_msgs::action::TeachMode> {
   CommandTraits traits() const override { return {.leaves_mode_active = true}; }
+
+  void check(const Goal & goal, Check & check) const override { check_end_of_mode(check, goal, false); }
 
   Outcome run(const Goal &, Run & run) override
   {
