@@ -99,10 +99,10 @@ class GoalTest : public testing::Test {
  protected:
   ~GoalTest() override { host_.goals().close(Error{ErrorCode::shutdown, "the test ends"}, seconds(10)); }
 
-  void serve(bool stops_when_client_lost = false)
+  void serve()
   {
     server_ = std::make_unique<GoalServer>(
-        host_, GoalServer::Description{rcl_cxx::action_type<Trigger>(), "test", stops_when_client_lost},
+        host_, GoalServer::Description{.type = rcl_cxx::action_type<Trigger>(), .name = "test"},
         [this](const rcl_cxx::GoalUUID & id, const void *) {
           goal_ = std::make_shared<BehavingGoal>(host_, id, behavior_);
           return goal_;

@@ -147,7 +147,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return options.run(options)
     except CliError as error:
         print(error, file=sys.stderr)
-        return 2
+        return error.exit_status
     except Interrupted as interrupted:
         return interrupted.exit_code
     except KeyboardInterrupt:

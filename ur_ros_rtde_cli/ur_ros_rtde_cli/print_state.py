@@ -15,7 +15,7 @@ from std_msgs.msg import Bool, Float64
 
 from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, RobotMode, SafetyMode
 
-from .errors import CliError
+from .errors import OperationFailed
 from .interruptions import Interrupted
 from .session import Session
 
@@ -71,7 +71,7 @@ def state_lines(latest: Dict[str, Any]) -> Iterator[str]:
 def print_state(session: Session, options: argparse.Namespace) -> int:
     latest = subscribe(session)
     if not session.wait(lambda: "joint_states" in latest, options.wait):
-        raise CliError(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
+        raise OperationFailed(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
                        "the robot on?")
     session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
     if options.watch and sys.stdout.isatty():

@@ -8,7 +8,7 @@ import pathlib
 import sys
 from typing import Any
 
-from .errors import CliError
+from .errors import OperationFailed
 from .interruptions import Interrupted
 
 RESPONSE_TIMEOUT = 10.0  # s, of a service
@@ -25,12 +25,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _call(session: Any, kind: Any, name: str, **request: Any) -> Any:
     client = session.node.create_client(kind, name)
     if not session.wait(client.service_is_ready, 5.0):
-        raise CliError(f"the service {name} is not available. Does robot_state_receiver run with this ROS_DOMAIN_ID?")
+        raise OperationFailed(f"the service {name} is not available. Does robot_state_receiver run with this ROS_DOMAIN_ID?")
     response = session.result(client.call_async(kind.Request(**request)), RESPONSE_TIMEOUT)
     if response is None:
-        raise CliError(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
+        raise OperationFailed(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
     if not response.success:
-        raise CliError(response.message)
+        raise OperationFailed(response.message)
     return response
 
 

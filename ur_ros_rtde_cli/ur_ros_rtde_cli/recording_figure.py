@@ -4,7 +4,7 @@ import pathlib
 import re
 from typing import Any, Optional, Sequence, Tuple
 
-from .errors import CliError
+from .errors import CliError, OperationFailed
 from .recording import Recording
 
 JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist 3")
@@ -66,7 +66,7 @@ def draw(recording: Recording, path: pathlib.Path, other: Optional[Recording] = 
     try:
         figure.savefig(path, dpi=120)
     except OSError as error:
-        raise CliError(f"{path} cannot be written: {error.strerror}") from None
+        raise OperationFailed(f"{path} cannot be written: {error.strerror}") from None
     finally:
         pyplot.close(figure)
     return path

@@ -10,7 +10,7 @@ import sys
 import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
-from .errors import CliError
+from .errors import CliError, OperationFailed
 from .version import version_line
 
 NODES = ("driver", "robot_state_receiver", "command_server", "dashboard_server")  # and the programs with these names
@@ -192,6 +192,6 @@ def run(file: pathlib.Path, namespace: str, robot: str, agreed: bool) -> int:
     try:
         file.write_text(text)
     except OSError as error:
-        raise CliError(f"{file} cannot be written: {error.strerror}") from error
+        raise OperationFailed(f"{file} cannot be written: {error.strerror}") from error
     print(f"written to {file}; read it again before you publish it", file=sys.stderr)
     return 0

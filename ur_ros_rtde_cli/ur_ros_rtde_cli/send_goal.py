@@ -10,7 +10,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_msgs.msg import GoalRejected
 
 from . import actions, fields
-from .errors import CliError
+from .errors import CliError, OperationFailed
 from .feedback import write
 from .goal_output import JsonOutput, TextOutput
 from .interruptions import Interrupted
@@ -63,7 +63,7 @@ class _ActionConnection:
         # A client that is created while announcements of the server are still arriving would be discovered only in part.
         client = ActionClient(self._session.node, action, self.name)
         if not self._session.wait(client.server_is_ready, self._options.wait, GRAPH_POLL_PERIOD):
-            raise CliError(f"the server of {self.name} does not respond")
+            raise OperationFailed(f"the server of {self.name} does not respond")
         return client, goal
 
     def _served_type(self) -> Optional[str]:

@@ -190,7 +190,7 @@ tl::expected<std::reference_wrapper<const RobotModel>, std::string> find_robot_m
 Vector6 default_position(const RobotModel &)
 {
   Vector6 position;
-  position << 0.0, -pi / 2.0, -pi / 2.0, -pi / 2.0, pi / 2.0, 0.0;
+  position << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0;
   return position;
 }
 
