@@ -1,6 +1,7 @@
 #include <ur_ros_rtde_msgs/action/set_payload.hpp>
 
 #include "settings/setting_helpers.hpp"
+#include "ur_ros_rtde/tool_settings.hpp"
 
 namespace ur_ros_rtde {
 
@@ -12,10 +13,7 @@ class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    check_result(run.control()->setPayload(goal.mass, to_ur_center_of_gravity(goal.center_of_gravity)),
-                 "set the payload");
-    const auto is_set = [&] { return has_payload(run.state(), goal.mass, goal.center_of_gravity); };
-    return run.expect(is_set, setting_timeout, "the robot still reports another payload");
+    return set_payload(run, goal.mass, to_vector(goal.center_of_gravity));
   }
 };
 

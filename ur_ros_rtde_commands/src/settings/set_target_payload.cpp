@@ -3,6 +3,7 @@
 #include <ur_ros_rtde_msgs/action/set_target_payload.hpp>
 
 #include "settings/setting_helpers.hpp"
+#include "ur_ros_rtde/tool_settings.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -34,10 +35,11 @@ class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPaylo
   Outcome run(const Goal & goal, Run & run) override
   {
     const std::vector<double> inertia(goal.inertia.begin(), goal.inertia.end());
-    const auto cog = to_ur_center_of_gravity(goal.center_of_gravity);
-    check_result(run.control()->setTargetPayload(goal.mass, cog, inertia), "set the payload");
+    const Vector3 cog = to_vector(goal.center_of_gravity);
+    check_result(run.control()->setTargetPayload(goal.mass, to_ur_center_of_gravity(cog), inertia),
+                 "set the payload");
     const auto is_set = [&] {
-      return has_payload(run.state(), goal.mass, goal.center_of_gravity) &&
+      return has_payload(run.state(), goal.mass, cog) &&
              has_inertia(run.state(), goal.inertia);
     };
     return run.expect(is_set, setting_timeout, "the robot still reports another payload");

@@ -32,21 +32,9 @@ Check & check_payload(Check & check, double mass, const geometry_msgs::msg::Vect
       .vector("center_of_gravity", center_of_gravity, 1.0, "m");
 }
 
-bool has_payload(const Sample & sample, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity)
+Vector3 to_vector(const geometry_msgs::msg::Vector3 & vector)
 {
-  constexpr double tolerance = 1e-3;  // kg, m
-  const Vector3 & reported = sample.payload_cog;
-  const auto & expected = center_of_gravity;
-  return std::isnan(sample.payload) || (std::abs(sample.payload - mass) < tolerance &&
-                                        std::hypot(reported[0] - expected.x, reported[1] - expected.y,
-                                                   reported[2] - expected.z) < tolerance);
-}
-
-std::vector<double> to_ur_center_of_gravity(const geometry_msgs::msg::Vector3 & center_of_gravity)
-{
-  const auto & cog = center_of_gravity;
-  const bool zero = cog.x == 0.0 && cog.y == 0.0 && cog.z == 0.0;
-  return {cog.x, cog.y, zero ? 1e-9 : cog.z};
+  return {vector.x, vector.y, vector.z};
 }
 
 }  // namespace ur_ros_rtde

@@ -24,10 +24,6 @@ Outcome send_failure();
 
 /// Checks the mass (kg) and the center of gravity (m) of a payload.
 Check & check_payload(Check & check, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity);
-/// The robot reports this payload. Always true before PolyScope 5.5, which does not report it.
-bool has_payload(const Sample & sample, double mass, const geometry_msgs::msg::Vector3 & center_of_gravity);
-/// The center of gravity for ur_rtde. The control script of ur_rtde keeps the previous center of gravity if
-/// the new one is exactly zero, so that zero is replaced by 1 nm.
-std::vector<double> to_ur_center_of_gravity(const geometry_msgs::msg::Vector3 & center_of_gravity);
+Vector3 to_vector(const geometry_msgs::msg::Vector3 & vector);
 
 }  // namespace ur_ros_rtde
