@@ -88,8 +88,7 @@ Action power(RequestFields & fields)
   const std::string to = fields.choice("to", targets);
   return [=](ControlPortContext & context) -> json {
     if (to == "running") {
-      context.safety.start_running(context.state);
-      return json::object();
+      return require_success(context.safety.start_running(context.state));
     }
     return require_success(to == "off"  ? context.pendant.power_off()
                            : to == "on" ? context.pendant.power_on()

@@ -376,8 +376,10 @@ void Controller::reboot(double duration)
   // Replaced in place: references to these objects stay valid.
   arm_.emplace(model_, version_.cycle_time(), joint_positions);
   arm_->teleport(joint_positions, state_);
-  safety_.emplace(model_, version_.cycle_time(), SafetyLimits{}, safety_times(options_));
+  const SafetyInputs inputs = safety_->inputs();
+  safety_.emplace(model_, version_.cycle_time(), SafetyLimits{}, safety_times(options_), inputs);
   safety_->step(state_);
+  pendant_->reboot();
   switch_on_time_ = duration;
 }
 

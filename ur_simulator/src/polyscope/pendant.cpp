@@ -52,9 +52,18 @@ Pendant::Pendant(const RobotModel & model, const PendantOptions & options, Contr
       reports_(state, log, options.serial_number, options.reports_folder)
 {
   if (options_.version.is_polyscope_x()) {
-    loaded_program_ = default_program;
-    store_program(loaded_program_, {.script = "def default_program():\nend\n"});
+    store_program(default_program, {.script = "def default_program():\nend\n"});
   }
+  reboot();
+}
+
+void Pendant::reboot()
+{
+  loaded_program_ = options_.version.is_polyscope_x() ? default_program : "";
+  last_script_.clear();
+  operational_mode_.reset();
+  safety_popup_.reset();
+  user_role = default_user_role;
 }
 
 // ---- stored programs

@@ -81,6 +81,8 @@ class Pendant {
   void show_safety_popup(std::string text) { safety_popup_ = std::move(text); }
   const std::optional<std::string> & safety_popup() const { return safety_popup_; }
 
+  /// Forgets what is not on the disk: the loaded program, the last script, modes and popups.
+  void reboot();
   /// Requests that the controller switches itself off.
   void request_shutdown() { shutdown_requested_ = true; }
   /// Returns whether a shutdown was requested since the last call.
@@ -101,8 +103,9 @@ class Pendant {
 
   /// "MANUAL" or "AUTOMATIC", if it has been set.
   const std::optional<std::string> & operational_mode() const { return operational_mode_; }
+  static constexpr std::string_view default_user_role = "PROGRAMMER";
   /// CB3 only: "PROGRAMMER", "OPERATOR", "NONE", "LOCKED" or "RESTRICTED".
-  std::string user_role = "PROGRAMMER";
+  std::string user_role{default_user_role};
 
   ReportWriter & reports() { return reports_; }
   const RobotModel & model() const { return model_; }

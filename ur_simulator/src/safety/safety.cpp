@@ -51,13 +51,23 @@ bool is_failure(SafetyMode mode)
 }  // namespace
 
 Safety::Safety(const RobotModel & model, double cycle_time, const SafetyLimits & limits,
-               const SafetyTimes & times)
+               const SafetyTimes & times, const SafetyInputs & inputs)
     : cycle_time_(cycle_time),
       limits_(limits),
       times_(times),
       limit_monitor_(model, cycle_time),
-      standstill_time_(steady_delay)
+      standstill_time_(steady_delay),
+      inputs_(inputs)
 {
+  safety_mode_ = mode_of_inputs();
+}
+
+SafetyMode Safety::undisturbed_mode() const
+{
+  if (inputs_.safeguard_open) {
+    return SafetyMode::safeguard_stop;
+  }
+  return inputs_.reduced ? SafetyMode::reduced : SafetyMode::normal;
 }
 
 SafetyResult Safety::check_power_on() const
@@ -105,12 +115,16 @@ SafetyResult Safety::power_off()
   return {};
 }
 
-void Safety::start_running(ControllerState & state)
+SafetyResult Safety::start_running(ControllerState & state)
 {
+  if (const auto result = check_power_on(); !result) {
+    return result;
+  }
   requested_power_ = Power::running;
   power_cut_pending_ = false;
   enter(RobotMode::running);
   write(state);
+  return {};
 }
 
 void Safety::trigger_protective_stop(std::string_view reason, const ErrorCode & code)
@@ -140,7 +154,7 @@ SafetyResult Safety::unlock_protective_stop(UnlockDelay delay)
         times_.unlock_delay, left));
   }
   limit_monitor_.tolerate_present_force();
-  enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
+  enter(undisturbed_mode());
   log(Level::information, "protective stop unlocked");
   return {};
 }
@@ -148,7 +162,7 @@ SafetyResult Safety::unlock_protective_stop(UnlockDelay delay)
 void Safety::press_emergency_stop(bool system)
 {
   const SafetyMode mode = system ? SafetyMode::system_emergency_stop : SafetyMode::robot_emergency_stop;
-  pressed_button_ = mode;
+  inputs_.emergency_stop = mode;
   if (safety_mode_ != mode && !is_failure(safety_mode_)) {
     stop_and_cut_power(mode, "emergency stop", std::nullopt);
   }
@@ -156,12 +170,12 @@ void Safety::press_emergency_stop(bool system)
 
 SafetyResult Safety::release_emergency_stop()
 {
-  if (!pressed_button_) {
+  if (!inputs_.emergency_stop) {
     return reject("no emergency stop is pressed");
   }
-  pressed_button_.reset();
+  inputs_.emergency_stop.reset();
   if (is_emergency(safety_mode_)) {
-    enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
+    enter(undisturbed_mode());
     log(Level::information, "emergency stop released");
   }
   return {};
@@ -169,27 +183,32 @@ SafetyResult Safety::release_emergency_stop()
 
 void Safety::open_safeguard()
 {
+  inputs_.safeguard_open = true;
   if (allows_motion(safety_mode_)) {
+    safeguard_paused_program_ = program_runs_;
     stop(SafetyMode::safeguard_stop, Level::warning, "safeguard stop", std::nullopt);
   }
 }
 
 SafetyResult Safety::reset_safeguard()
 {
-  if (safety_mode_ != SafetyMode::safeguard_stop) {
-    return reject(fmt::format("no safeguard stop to reset: safety mode is {}", to_string(safety_mode_)));
+  if (!inputs_.safeguard_open) {
+    return reject("the safeguard is closed already");
   }
-  enter(reduced_ ? SafetyMode::reduced : SafetyMode::normal);
-  actions_.resume_program = true;
+  inputs_.safeguard_open = false;
   log(Level::information, "safeguard reset");
+  if (safety_mode_ == SafetyMode::safeguard_stop) {
+    enter(undisturbed_mode());
+    actions_.resume_program = std::exchange(safeguard_paused_program_, false);
+  }
   return {};
 }
 
 SafetyResult Safety::set_reduced(bool reduced)
 {
-  reduced_ = reduced;
+  inputs_.reduced = reduced;
   if (safety_mode_ == SafetyMode::normal || safety_mode_ == SafetyMode::reduced) {
-    enter(reduced ? SafetyMode::reduced : SafetyMode::normal);
+    enter(undisturbed_mode());
   }
   return {};
 }
@@ -207,7 +226,7 @@ void Safety::trigger_fault(std::string_view reason)
 
 SafetyResult Safety::restart_safety()
 {
-  if (pressed_button_) {
+  if (inputs_.emergency_stop) {
     return reject("cannot restart safety: release the emergency stop first");
   }
   requested_power_ = Power::off;
@@ -224,6 +243,7 @@ SafetyActions Safety::step(ControllerState & state)
 {
   cycle_ = state.cycle;
   now_ = state.timestamp;
+  program_runs_ = state.runtime_state == RuntimeState::playing || state.runtime_state == RuntimeState::resuming;
   update_standstill(state);
   check_limits(state);
   update_power_cut();
@@ -292,6 +312,7 @@ void Safety::stop(SafetyMode mode, SafetyEvent::Level level, std::string message
 void Safety::stop_and_cut_power(SafetyMode mode, std::string message, const std::optional<ErrorCode> & code)
 {
   stop(mode, Level::error, std::move(message), code);
+  safeguard_paused_program_ = false;
   actions_.pause_program = false;
   actions_.stop_program = true;
   requested_power_ = Power::off;
@@ -319,10 +340,10 @@ void Safety::update_power()
       return;
     }
     restart_ends_at_ = -1.0;
-    if (pressed_button_) {
+    if (inputs_.emergency_stop) {
       requested_power_ = Power::off;
     }
-    enter(pressed_button_.value_or(reduced_ ? SafetyMode::reduced : SafetyMode::normal));
+    enter(mode_of_inputs());
   }
   if (power_cut_pending_) {
     return;

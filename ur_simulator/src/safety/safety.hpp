@@ -20,12 +20,19 @@ namespace ur_simulator {
 struct SafetyActions {
   std::optional<double> stop_arm;  ///< Arm::stop_all() with this deceleration, rad/s^2
   bool pause_program = false;      ///< a protective or safeguard stop began
-  bool resume_program = false;     ///< safeguard was reset
+  bool resume_program = false;     ///< the safeguard stop that paused it has ended
   bool stop_program = false;       ///< emergency stop, violation, fault, power off
 };
 
 /// The error says why the request is rejected, worded as for the robot's log.
 using SafetyResult = tl::expected<void, std::string>;
+
+/// What is wired to the safety system, which a reboot does not change.
+struct SafetyInputs {
+  std::optional<SafetyMode> emergency_stop;  ///< the mode of the button that is pressed
+  bool safeguard_open = false;
+  bool reduced = false;
+};
 
 /// Whether a protective stop can be unlocked only after SafetyTimes::unlock_delay.
 enum class UnlockDelay { required, waived };
@@ -36,7 +43,7 @@ enum class UnlockDelay { required, waived };
 class Safety {
  public:
   Safety(const RobotModel & model, double cycle_time, const SafetyLimits & limits = {},
-         const SafetyTimes & times = {});
+         const SafetyTimes & times = {}, const SafetyInputs & inputs = {});
 
   /// Dashboard commands power on, brake release (powers on first if necessary) and power off. A request that
   /// is already fulfilled succeeds. While the safety system restarts, requests wait until it has restarted.
@@ -44,7 +51,7 @@ class Safety {
   SafetyResult brake_release();
   SafetyResult power_off();
   /// Powers on and releases the brakes without delays.
-  void start_running(ControllerState & state);
+  SafetyResult start_running(ControllerState & state);
 
   /// Triggers a protective stop; while stopped, the request is only logged.
   void trigger_protective_stop(std::string_view reason,
@@ -57,7 +64,8 @@ class Safety {
   /// stop. After the release the robot stays in POWER_OFF with safety mode NORMAL.
   void press_emergency_stop(bool system = false);
   SafetyResult release_emergency_stop();
-  /// Safeguard input: opening it stops the arm, which stays powered.
+  /// Safeguard input: the arm stays powered, and stopped as long as it is open, whatever else ends. Closing
+  /// and resetting it resumes the program that it paused.
   void open_safeguard();
   SafetyResult reset_safeguard();
   /// Switches between safety modes NORMAL and REDUCED.
@@ -68,6 +76,7 @@ class Safety {
   void trigger_fault(std::string_view reason);
   SafetyResult restart_safety();
   bool restarting() const { return restart_ends_at_ >= 0.0; }
+  const SafetyInputs & inputs() const { return inputs_; }
 
   void set_limits(const SafetyLimits & limits) { limits_ = limits; }
   const SafetyLimits & limits() const { return limits_; }
@@ -99,6 +108,10 @@ class Safety {
   void check_limits(const ControllerState & state);
   void update_standstill(const ControllerState & state);
   bool stopped() const { return !allows_motion(safety_mode_); }
+  /// The mode in which only the safeguard and the choice of limits matter.
+  SafetyMode undisturbed_mode() const;
+  /// The mode that the inputs alone determine.
+  SafetyMode mode_of_inputs() const { return inputs_.emergency_stop.value_or(undisturbed_mode()); }
 
   double cycle_time_;
   SafetyLimits limits_;
@@ -118,8 +131,9 @@ class Safety {
   double brake_release_since_ = 0.0;
   bool releasing_brakes_ = false;
   bool power_cut_pending_ = false;
-  bool reduced_ = false;
-  std::optional<SafetyMode> pressed_button_;
+  SafetyInputs inputs_;
+  bool program_runs_ = false;
+  bool safeguard_paused_program_ = false;
   SafetyActions actions_;
   std::deque<SafetyEvent> events_;
   std::uint64_t dropped_events_ = 0;

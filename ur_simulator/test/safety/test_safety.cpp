@@ -182,6 +182,8 @@ TEST(EmergencyStopTest, CutsThePowerEvenIfReleasedDuringTheStop)
 TEST(SafeguardTest, PausesAndResumesTheProgram)
 {
   RobotFixture fixture;
+  fixture.state.runtime_state = RuntimeState::playing;
+  fixture.step();
   fixture.safety.open_safeguard();
   fixture.run(0.1);
   EXPECT_EQ(fixture.state.safety_mode, SafetyMode::safeguard_stop);
@@ -192,6 +194,18 @@ TEST(SafeguardTest, PausesAndResumesTheProgram)
   EXPECT_EQ(fixture.resumed, 1);
   EXPECT_EQ(fixture.state.safety_mode, SafetyMode::normal);
   EXPECT_FALSE(fixture.safety.reset_safeguard());
+}
+
+TEST(SafeguardTest, DoesNotResumeAProgramThatItHasNotPaused)
+{
+  RobotFixture fixture;
+  fixture.state.runtime_state = RuntimeState::paused;
+  fixture.step();
+  fixture.safety.open_safeguard();
+  fixture.run(0.1);
+  ASSERT_TRUE(fixture.safety.reset_safeguard());
+  fixture.step();
+  EXPECT_EQ(fixture.resumed, 0);
 }
 
 TEST(ReducedModeTest, IsRestoredAfterAStop)
