@@ -1,5 +1,6 @@
 # The Python wheel (pyproject.toml) contains the program alone. It needs no library of the build machine except the
-# C library: fmt is compiled in, yaml-cpp and the C++ library are linked statically.
+# C library and tinyxml2, which has no static library on Debian and which auditwheel adds for other machines: fmt is
+# compiled in, yaml-cpp and the C++ library are linked statically.
 set(BUILD_TESTING OFF)
 set(wheel_program_folder ${SKBUILD_PLATLIB_DIR}/ur_simulator/bin)
 set(UR_SIMULATOR_PROGRAM "" CACHE FILEPATH "Program to package instead of building one: for tests of the wheel")

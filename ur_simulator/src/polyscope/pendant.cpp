@@ -52,7 +52,7 @@ Pendant::Pendant(const RobotModel & model, const PendantOptions & options, Contr
       reports_(state, log, options.serial_number, options.reports_folder)
 {
   if (options_.version.is_polyscope_x()) {
-    store_program(default_program, {.script = "def default_program():\nend\n"});
+    store_program(std::string(default_program), {.script = "def default_program():\nend\n"});
   }
   reboot();
 }

@@ -1,12 +1,12 @@
 #include "script_api/xml_rpc.hpp"
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <array>
-#include <boost/property_tree/xml_parser.hpp>
 #include <charconv>
-#include <sstream>
+#include <optional>
 #include <stdexcept>
 
 #include "urscript/interpreter/containers.hpp"
@@ -15,7 +15,7 @@ namespace ur_simulator {
 
 namespace {
 
-using boost::property_tree::ptree;
+using tinyxml2::XMLElement;
 using urscript::List;
 using urscript::Structure;
 using urscript::Type;
@@ -23,7 +23,6 @@ using urscript::Value;
 
 constexpr std::array<const char *, 6> pose_members{"x", "y", "z", "rx", "ry", "rz"};
 constexpr int max_depth = 14;  // of values in each other
-constexpr int max_tags = 100;  // in each other
 
 std::string escaped(std::string_view text)
 {
@@ -139,15 +138,29 @@ Value string_value(const std::string & text)
   return text;
 }
 
-Value decode(const ptree & value, int depth);
+const XMLElement & child(const XMLElement & parent, const char * name)
+{
+  const XMLElement * found = parent.FirstChildElement(name);
+  if (found == nullptr) {
+    throw std::runtime_error(fmt::format("<{}> has no <{}>", std::string(parent.Name()).substr(0, 40), name));
+  }
+  return *found;
+}
 
-Value decode_array(const ptree & array, int depth)
+std::string text(const XMLElement & element)
+{
+  const char * content = element.GetText();
+  return content == nullptr ? "" : content;
+}
+
+Value decode(const XMLElement & value, int depth);
+
+Value decode_array(const XMLElement & array, int depth)
 {
   List elements;
-  for (const auto & [name, element] : array.get_child("data")) {
-    if (name == "value") {
-      elements.push_back(decode(element, depth + 1));
-    }
+  for (const auto * value = child(array, "data").FirstChildElement("value"); value != nullptr;
+       value = value->NextSiblingElement("value")) {
+    elements.push_back(decode(*value, depth + 1));
   }
   auto list = urscript::make_list(elements);  // a matrix if it is one
   return list ? std::move(*list) : throw std::runtime_error(list.error());
@@ -167,84 +180,69 @@ std::optional<Vector6> as_pose(const Structure & structure)
   return pose;
 }
 
-Value decode_structure(const ptree & structure, int depth)
+Value decode_structure(const XMLElement & structure, int depth)
 {
   Structure result;
-  for (const auto & [name, element] : structure) {
-    if (name == "member") {
-      result.members.emplace_back(element.get<std::string>("name"),
-                                  decode(element.get_child("value"), depth + 1));
-    }
+  for (const auto * member = structure.FirstChildElement("member"); member != nullptr;
+       member = member->NextSiblingElement("member")) {
+    result.members.emplace_back(text(child(*member, "name")), decode(child(*member, "value"), depth + 1));
   }
   const auto pose = as_pose(result);
   return pose ? Value::pose(*pose) : Value(std::move(result));
 }
 
-Value decode_typed(const std::string & type, const ptree & value, int depth)
+Value decode_typed(const XMLElement & value, int depth)
 {
+  const std::string type = value.Name();
   if (type == "array") {
     return decode_array(value, depth);
   }
   if (type == "struct") {
     return decode_structure(value, depth);
   }
-  const std::string & text = value.data();
   if (type == "boolean") {
-    return parse_number<int>(text) != 0;
+    return parse_number<int>(text(value)) != 0;
   }
   if (type == "int" || type == "i4") {
-    return parse_number<std::int32_t>(text);
+    return parse_number<std::int32_t>(text(value));
   }
   if (type == "double") {
-    return parse_number<double>(text);
+    return parse_number<double>(text(value));
   }
   if (type == "string") {
-    return string_value(text);
+    return string_value(text(value));
   }
   throw std::runtime_error(fmt::format("URScript has no type for '{}'", type.substr(0, 40)));
 }
 
-Value decode(const ptree & value, int depth)
+Value decode(const XMLElement & value, int depth)
 {
   if (depth > max_depth) {
     throw std::runtime_error(fmt::format("values are nested deeper than {} levels", max_depth));
   }
-  return value.empty() ? string_value(value.data())  // a value without a type is a string
-                       : decode_typed(value.front().first, value.front().second, depth);
+  const XMLElement * typed = value.FirstChildElement();
+  return typed == nullptr ? string_value(text(value))  // a value without a type is a string
+                          : decode_typed(*typed, depth);
 }
 
-/// Whether more than `limit` tags are open at a time. Comments may count as tags.
-bool nested_deeper(std::string_view document, int limit)
+Value parse_response(std::string_view body)
 {
-  int depth = 0;
-  while (!document.empty()) {
-    const std::string_view part = document.substr(0, document.find('<', 1));  // begins with a tag
-    document.remove_prefix(part.size());
-    const bool opens = part.starts_with('<') && !part.starts_with("<?") && part.find("/>") == part.npos;
-    depth = part.starts_with("</") ? std::max(0, depth - 1) : depth + (opens ? 1 : 0);
-    if (depth > limit) {
-      return true;
-    }
+  tinyxml2::XMLDocument document;  // limits the depth of tags
+  if (document.Parse(body.data(), body.size()) != tinyxml2::XML_SUCCESS) {
+    throw std::runtime_error(fmt::format("{} in line {}", document.ErrorName(), document.ErrorLineNum()));
   }
-  return false;
-}
-
-Value parse_response(const std::string & body)
-{
-  if (nested_deeper(body, max_tags)) {  // the parser of the library recurses
-    throw std::runtime_error(fmt::format("it is nested deeper than {} tags", max_tags));
+  const XMLElement * response = document.FirstChildElement("methodResponse");
+  if (response == nullptr) {
+    throw std::runtime_error("it has no <methodResponse>");
   }
-  std::istringstream stream(body);
-  ptree document;
-  boost::property_tree::read_xml(stream, document, boost::property_tree::xml_parser::no_comments);
-  const ptree & response = document.get_child("methodResponse");
-  if (const auto fault = response.get_child_optional("fault.value")) {
-    const Value value = decode(*fault, 0);
-    const Value * text = value.is(Type::structure) ? value.structure().find("faultString") : nullptr;
-    throw std::runtime_error("fault: " + (text == nullptr ? value : *text).text());
+  if (const XMLElement * fault = response->FirstChildElement("fault")) {
+    const Value value = decode(child(*fault, "value"), 0);
+    const Value * reason = value.is(Type::structure) ? value.structure().find("faultString") : nullptr;
+    throw std::runtime_error("fault: " + (reason == nullptr ? value : *reason).text());
   }
-  const auto value = response.get_child_optional("params.param.value");
-  return value ? decode(*value, 0) : Value();
+  const XMLElement * parameters = response->FirstChildElement("params");
+  const XMLElement * parameter = parameters == nullptr ? nullptr : parameters->FirstChildElement("param");
+  return parameter == nullptr ? Value() : decode(child(*parameter, "value"), 0);
 }
 
 }  // namespace
@@ -263,7 +261,7 @@ std::string xml_rpc_request(std::string_view method, urscript::Arguments argumen
 tl::expected<Value, std::string> parse_xml_rpc_response(std::string_view body)
 {
   try {
-    return parse_response(std::string(body));
+    return parse_response(body);
   } catch (const std::exception & error) {
     return tl::unexpected(fmt::format("XML-RPC response: {}", error.what()));
   }

@@ -87,6 +87,43 @@ TEST(MoveJTest, TakesTwiceTheTimeWithTheSpeedSliderAtOneHalf)
   EXPECT_NEAR(fixture.max_velocity[0], 0.525, 1e-6);
 }
 
+TEST(SpeedSliderTest, ScalesSpeedjInVelocityAndTime)
+{
+  ArmFixture fixture;
+  fixture.state.speed_slider = 0.25;
+  fixture.run(1.0);
+  const auto motion = fixture.arm.speed_joint(six(0.4, 0, 0, 0, 0, 0), 1.6, 1.0);
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(fixture.until_finished(*motion), 4.0, 2.0 * fixture.dt);
+  EXPECT_NEAR(fixture.max_velocity[0], 0.1, 1e-9);
+  EXPECT_NEAR(fixture.state.target.position[0], 0.25 * (4.0 - 0.5) * 0.4, 1e-3) << "as far as at 100 %";
+}
+
+TEST(SpeedSliderTest, StopsSpeedjAtZeroAndLetsItGoOn)
+{
+  ArmFixture fixture;
+  ASSERT_TRUE(fixture.arm.speed_joint(six(0.4, 0, 0, 0, 0, 0), 1.6, 0.0));
+  fixture.run(1.0);
+  fixture.state.speed_slider = 0.0;
+  fixture.run(1.0);
+  EXPECT_TRUE(fixture.state.target.velocity.isZero(1e-9));
+  fixture.state.speed_slider = 1.0;
+  fixture.run(2.0);
+  EXPECT_NEAR(fixture.state.target.velocity[0], 0.4, 1e-9);
+}
+
+TEST(SpeedSliderTest, DoesNotWeakenAStop)
+{
+  ArmFixture fixture;
+  fixture.state.speed_slider = 0.5;
+  fixture.run(1.0);
+  ASSERT_TRUE(fixture.arm.speed_joint(six(1.0, 0, 0, 0, 0, 0), 4.0, 0.0));
+  fixture.run(2.0);
+  EXPECT_NEAR(fixture.state.target.velocity[0], 0.5, 1e-9);
+  ASSERT_TRUE(fixture.arm.stop_joint(2.0));
+  EXPECT_NEAR(fixture.until_rest(5.0), 0.25, 0.1);
+}
+
 TEST(SpeedSliderTest, ChangeDuringAMotionIsGradual)
 {
   ArmFixture fixture;

@@ -27,6 +27,18 @@ double turn_between(Vector6 a, Vector6 b)
   return pose_distance(a, b);
 }
 
+TEST(SpeedSliderTest, ScalesSpeedl)
+{
+  ArmFixture fixture;
+  fixture.state.speed_slider = 0.5;
+  fixture.run(1.0);
+  const Vector6 start = fixture.tcp();
+  const auto motion = fixture.arm.speed_linear(six(0.0, 0.1, 0.0, 0, 0, 0), 0.5, 1.0);
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR(fixture.until_finished(*motion), 2.0, 2.0 * fixture.dt);
+  EXPECT_NEAR(fixture.tcp()[1] - start[1], 0.1 - 0.01, 1e-3);
+}
+
 TEST(MoveLTest, MovesTheToolOnAStraightLineAtItsSpeedToTheTarget)
 {
   for (const char * name : {"ur10e", "ur5", "ur20"}) {

@@ -111,11 +111,25 @@ TEST(XmlRpcTest, DeepNestingIsRejected)
     value = "<array><data><value>" + value + "</value></data></array>";
   }
   EXPECT_NE(parsed(value).find("nested deeper"), std::string::npos);
-  std::string tags;
-  for (int i = 0; i < 30000; ++i) {
-    tags += "<value>";
+}
+
+/// A hostile server must not reach the depth at which a parser runs out of stack.
+TEST(XmlRpcTest, ManyOpenTagsAreRejected)
+{
+  for (const char * tag : {"<value>", "<a>/>", "<a b='/>'>"}) {
+    std::string tags;
+    for (int i = 0; i < 150000; ++i) {
+      tags += tag;
+    }
+    EXPECT_EQ(parse_xml_rpc_response(tags).error(),
+              "XML-RPC response: XML_ELEMENT_DEPTH_EXCEEDED in line 1");
   }
-  EXPECT_EQ(parse_xml_rpc_response(tags).error(), "XML-RPC response: it is nested deeper than 100 tags");
+}
+
+TEST(XmlRpcTest, EntitiesAndCommentsArePartOfXml)
+{
+  EXPECT_EQ(parsed("<string>a &lt; b &amp; c</string>"), "a < b & c");
+  EXPECT_EQ(parsed("<!-- five --><int>5</int>"), "5");
 }
 
 }  // namespace

@@ -20,18 +20,15 @@ JointSpeedMotion JointSpeedMotion::stop(const RobotModel & model, double deceler
 
 std::optional<MotionFault> JointSpeedMotion::advance(const TimeStep & time_step, Setpoint & setpoint)
 {
-  begin_cycle(time_step.duration);
-  const Vector6 change = target() - setpoint.velocity;
-  const double largest = change.cwiseAbs().maxCoeff();
-  const double step = acceleration() * time_step.duration;
-  const bool velocity_reached = largest <= step;
-  Vector6 velocity = velocity_reached ? target() : Vector6(setpoint.velocity + change * (step / largest));
+  begin_cycle(time_step);
+  Vector6 velocity =
+      next_velocity(setpoint.velocity, [](const Vector6 & change) { return change.cwiseAbs().maxCoeff(); });
   if (const auto fault = keep_within_limits(time_step, setpoint, velocity)) {
     return fault;
   }
   setpoint.position += 0.5 * time_step.duration * (setpoint.velocity + velocity);
   setpoint.velocity = velocity;
-  end_cycle(time_step.duration, velocity, velocity_reached);
+  end_cycle(velocity);
   return std::nullopt;
 }
 

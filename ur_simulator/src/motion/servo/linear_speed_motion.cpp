@@ -17,12 +17,10 @@ LinearSpeedMotion::LinearSpeedMotion(const TcpKinematics & kinematics, const Set
 
 std::optional<MotionFault> LinearSpeedMotion::advance(const TimeStep & time_step, Setpoint & setpoint)
 {
-  begin_cycle(time_step.duration);
-  const Vector6 change = target() - twist_;
-  const double largest = std::max(change.head<3>().norm(), change.tail<3>().norm());
-  const double step = acceleration() * time_step.duration;
-  const bool velocity_reached = largest <= step;
-  const Vector6 next = velocity_reached ? target() : Vector6(twist_ + change * (step / largest));
+  begin_cycle(time_step);
+  const Vector6 next = next_velocity(twist_, [](const Vector6 & change) {
+    return std::max(change.head<3>().norm(), change.tail<3>().norm());
+  });
   const Vector6 displacement = 0.5 * time_step.duration * (twist_ + next);
   Transform pose = pose_;
   pose.translation() += displacement.head<3>();
@@ -35,7 +33,7 @@ std::optional<MotionFault> LinearSpeedMotion::advance(const TimeStep & time_step
   }
   pose_ = pose;
   twist_ = next;
-  end_cycle(time_step.duration, twist_, velocity_reached);
+  end_cycle(twist_);
   if (finished()) {
     setpoint.velocity.setZero();
   }

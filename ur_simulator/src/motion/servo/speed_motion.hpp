@@ -1,10 +1,14 @@
 #pragma once
 
+#include <functional>
+
 #include "motion/motion.hpp"
 
 namespace ur_simulator {
 
-/// A motion to a target velocity, optionally for a limited time: speedj, speedl and the stops.
+/// A motion to a target velocity, optionally for a limited time: speedj, speedl and the stops. The speed slider
+/// scales its time, and thus its velocity: UR's passthrough trajectory controller, which executes trajectories by
+/// speedj, slows down with the slider. What decelerates to standstill is not scaled (assumed).
 class SpeedMotion : public Motion {
  public:
   bool call_complete() const final { return call_complete_; }
@@ -17,17 +21,23 @@ class SpeedMotion : public Motion {
   SpeedMotion(const Vector6 & target, double acceleration, double time);
 
   /// Starts a cycle; decelerates when the time is up.
-  void begin_cycle(double duration);
-  /// Ends a cycle; `velocity_reached`: the velocity equals the target.
-  void end_cycle(double duration, const Vector6 & velocity, bool velocity_reached);
+  void begin_cycle(const TimeStep & time_step);
+  /// The velocity after this cycle: it goes straight to the target. `size` of a change is at most acceleration times
+  /// time; both are scaled, except for an arm that is too fast.
+  Vector6 next_velocity(const Vector6 & velocity, const std::function<double(const Vector6 &)> & size);
+  /// Ends a cycle with this velocity.
+  void end_cycle(const Vector6 & velocity);
   const Vector6 & target() const { return target_; }
-  double acceleration() const { return acceleration_; }
 
  private:
   Vector6 target_;
   double acceleration_;
   double time_;
-  double elapsed_ = 0.0;
+  double elapsed_ = 0.0;                ///< s, scaled
+  double duration_ = 0.0;               ///< s of this cycle
+  double scaling_ = 1.0;                ///< of its time and velocity
+  std::optional<double> last_scaling_;  ///< of the cycle before
+  bool velocity_reached_ = false;
   bool call_complete_ = false;
   bool finished_ = false;
 };
