@@ -23,11 +23,12 @@ InterpreterServer::InterpreterServer(boost::asio::io_context & io, const std::st
 void InterpreterServer::cycle()
 {
   mode_.set_program_running(pendant_.runner().running());
+  mode_.begin_cycle();
 }
 
 void InterpreterServer::receive(std::string_view line, const std::shared_ptr<Connection> & client)
 {
-  cycle();
+  mode_.set_program_running(pendant_.runner().running());
   mode_.receive(line, [weak = std::weak_ptr(client)](const std::string & reply) {
     if (const auto connection = weak.lock()) {
       connection->log().to_peer("{}", reply.substr(0, reply.find('\n')));

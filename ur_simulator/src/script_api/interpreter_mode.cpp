@@ -10,8 +10,10 @@ namespace ur_simulator {
 
 namespace {
 
-constexpr std::size_t max_statements = 1000;  // each new one compiles the program with all of them
-constexpr std::size_t max_queued = 1000;
+constexpr std::size_t max_queued_bytes = 4U << 20U;
+/// Of statements in a control cycle, and what each adds to its text.
+constexpr std::size_t max_cycle_bytes = 4000;
+constexpr std::size_t statement_bytes = 100;
 
 std::string discarded(std::string_view reason, std::string_view statement)
 {
@@ -30,13 +32,12 @@ void InterpreterMode::receive(std::string_view line, Reply reply)
     reply(std::move(*answer));
   } else if (!program_running_) {
     reply(discarded("no program is running", text));
-  } else if (queue_.size() == max_queued) {
-    reply(discarded(fmt::format("{} statements are queued", max_queued), text));
+  } else if (queued_bytes_ + text.size() + statement_bytes > max_queued_bytes) {
+    reply(discarded("too many statements are queued", text));
   } else {
+    queued_bytes_ += text.size() + statement_bytes;
     queue_.push_back({std::string(text), std::move(reply)});
-    if (active() && may_interpret_) {
-      interpret_queue();
-    }
+    interpret_queue();
   }
 }
 
@@ -70,34 +71,36 @@ std::optional<std::string> InterpreterMode::handle_command(std::string_view line
 
 void InterpreterMode::interpret(const Line & line)
 {
-  if (interpreted_ == max_statements) {
-    line.reply(discarded(
-        fmt::format("the program has {} interpreted statements: send clear_interpreter()", max_statements),
-        line.text));
-    return;
-  }
   const auto function = extension_->add(line.text);
   if (!function) {
     line.reply(discarded(function.error(), line.text));
     return;
   }
-  ++interpreted_;
   statements_.push_back({++last_id_, *function});
   clearing_ = line.text.find("clear_interpreter") != std::string::npos;
   line.reply(fmt::format("ack: {}: {}\n", last_id_, line.text));
 }
 
+void InterpreterMode::begin_cycle()
+{
+  cycle_bytes_ = 0;
+  interpret_queue();
+}
+
 void InterpreterMode::interpret_queue()
 {
-  while (!queue_.empty() && !clearing_) {
+  while (active() && may_interpret_ && !queue_.empty() && !clearing_ && cycle_bytes_ < max_cycle_bytes) {
     const Line line = std::move(queue_.front());
     queue_.pop_front();
+    queued_bytes_ -= line.text.size() + statement_bytes;
+    cycle_bytes_ += line.text.size() + statement_bytes;
     interpret(line);
   }
 }
 
 void InterpreterMode::discard_queue(std::string_view reason)
 {
+  queued_bytes_ = 0;
   for (const Line & line : std::exchange(queue_, {})) {
     line.reply(discarded(reason, line.text));
   }
@@ -108,7 +111,6 @@ void InterpreterMode::begin(std::uint64_t program, urscript::ProgramExtension & 
 {
   if (program != std::exchange(program_, program)) {
     last_id_ = last_executed_ = last_cleared_ = 0;
-    interpreted_ = 0;
   }
   extension_ = &extension;
   options_ = options;
@@ -154,7 +156,6 @@ std::optional<std::uint32_t> InterpreterMode::next_function()
 void InterpreterMode::clear()
 {
   extension_->remove_all();
-  interpreted_ = 0;
   clearing_ = false;
   last_cleared_ = last_id_;
 }

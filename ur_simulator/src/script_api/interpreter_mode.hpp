@@ -24,8 +24,10 @@ class InterpreterMode {
 
   /// Handles a line of a client; `reply` is called once, now or later.
   void receive(std::string_view line, Reply reply);
-  /// Whether a program is running. When it ends, queued statements are discarded. Call once per cycle.
+  /// Whether a program is running. When it ends, queued statements are discarded.
   void set_program_running(bool running);
+  /// Call once per control cycle: as many statements are interpreted in it as do not delay it.
+  void begin_cycle();
   /// Called by the command `abort`.
   void set_abort_handler(std::function<void()> handler) { abort_ = std::move(handler); }
 
@@ -65,7 +67,8 @@ class InterpreterMode {
   Options options_;
   std::deque<Line> queue_;            ///< received, not interpreted
   std::deque<Statement> statements_;  ///< interpreted, not executed
-  std::size_t interpreted_ = 0;       ///< statements in the program
+  std::size_t queued_bytes_ = 0;
+  std::size_t cycle_bytes_ = 0;       ///< interpreted in this control cycle
   bool clearing_ = false;             ///< a statement that clears is interpreted, but not executed
   bool may_interpret_ = false;        ///< the program is not being executed by the caller of begin()
   bool end_requested_ = false;

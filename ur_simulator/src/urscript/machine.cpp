@@ -32,7 +32,6 @@ std::uint64_t next_program()
 struct Machine::Impl final : ProgramExtension {
   Impl(Program compiled, std::shared_ptr<const Library> functions, Host & to, const MachineOptions & settings)
       : program(std::move(compiled)),
-        original(program),
         library(std::move(functions)),
         options(settings),
         context{to, settings.cycle_time, 0.0, 0, program.is_secondary(), next_program(), *this},
@@ -95,20 +94,22 @@ struct Machine::Impl final : ProgramExtension {
 
   tl::expected<std::uint32_t, std::string> add(std::string_view statements) override
   {
-    auto extended = extend(program, statements, *library);
     if (!extended) {
-      return tl::unexpected(extended.error().text());
+      extended.emplace(program, *library);
     }
-    program = std::move(extended->program);
-    interpreter.replace_code(program.code());
-    return extended->function;
+    const auto function = extended->add(statements);
+    if (!function) {
+      return tl::unexpected(function.error().text());
+    }
+    interpreter.replace_code(extended->code());
+    return *function;
   }
 
   void remove_all() override
   {
-    interpreter.kill_threads_of_extensions(original.code().functions.size());
-    program = original;
+    interpreter.kill_threads_of_extensions(program.code().functions.size());
     interpreter.replace_code(program.code());
+    extended.reset();
   }
 
   static void resume(Thread & thread, Value value)
@@ -180,8 +181,8 @@ struct Machine::Impl final : ProgramExtension {
     library->handle_end(context.program);
   }
 
-  Program program;         ///< with its extensions
-  const Program original;  ///< without
+  const Program program;
+  std::optional<ExtendedProgram> extended;  ///< if statements have been added
   std::shared_ptr<const Library> library;
   MachineOptions options;
   CallContext context;
@@ -250,7 +251,7 @@ std::uint32_t Machine::instructions() const
 
 const std::vector<std::string> & Machine::global_names() const
 {
-  return impl_->original.code().global_names;
+  return impl_->program.code().global_names;
 }
 
 const Value * Machine::global(const std::string & name) const

@@ -52,17 +52,24 @@ class Program {
 tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
                                             const CompileLimits & limits = {});
 
-/// A program with statements that were added while it runs.
-struct ExtendedProgram {
-  Program program;
-  std::uint32_t function;  ///< in Code::functions: executes the statements
-};
+/// A program and statements that are added while it runs. Its code, and that of earlier statements, keeps its place, so
+/// that running threads can continue. Only added statements see their new variables. Adding takes time in
+/// proportion to the statements alone.
+class ExtendedProgram {
+ public:
+  /// `program` was compiled with this library, which outlives this object.
+  ExtendedProgram(const Program & program, const Library & library, const CompileLimits & limits = {});
+  ~ExtendedProgram();
 
-/// Adds statements at the first level of a program. Its code, and that of earlier extensions, keeps its
-/// place, so that running threads can continue. Only extensions see the new variables of the statements.
-/// Compiles the whole program again.
-tl::expected<ExtendedProgram, CompileError> extend(const Program & program, std::string_view statements,
-                                                   const Library & library,
-                                                   const CompileLimits & limits = {});
+  /// Adds statements at the first level. Returns the function in Code::functions that executes them. Changes nothing
+  /// if they do not compile.
+  tl::expected<std::uint32_t, CompileError> add(std::string_view statements);
+  /// Grows with each call of add().
+  const Code & code() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace ur_simulator::urscript

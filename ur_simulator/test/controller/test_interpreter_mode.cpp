@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "support/simulator_test.hpp"
 #include "support/tcp_client.hpp"
 
@@ -213,13 +215,29 @@ TEST_F(InterpreterModeTest, TheEndOfTheProgramDiscardsTheQueue)
   EXPECT_EQ(client.receive_line(), "discard: the program has ended: x = 1");
 }
 
-TEST_F(InterpreterModeTest, TheSizeOfTheProgramIsLimited)
+TEST_F(InterpreterModeTest, InterpretsManyStatementsThatCameAtOnce)
 {
+  constexpr int count = 10000;
   enter();
-  for (int i = 2; i <= 1000; ++i) {
-    ASSERT_EQ(ask("sync()").substr(0, 4), "ack:") << i;
+  std::string lines;
+  for (int i = 0; i < count; ++i) {
+    lines += fmt::format("v{} = {}\n", i % 100, i);
   }
-  EXPECT_NE(ask("sync()").find("send clear_interpreter()"), std::string::npos);
+  client.send(lines);
+  for (int i = 0; i < count; ++i) {
+    ASSERT_EQ(client.receive_line(), fmt::format("ack: {}: v{} = {}", i + 2, i % 100, i));
+  }
+}
+
+TEST_F(InterpreterModeTest, TheSizeOfTheQueueIsLimited)
+{
+  run("def no_mode():\n  while True:\n    sync()\n  end\nend\n");
+  const std::string line = "textmsg(\"" + std::string(60000, 'x') + "\")";
+  for (int i = 0; i < 69; ++i) {
+    client.send(line + "\n");
+  }
+  client.send(line + "\n");
+  EXPECT_EQ(client.receive_line().substr(0, 45), "discard: too many statements are queued: text");
 }
 
 TEST(InterpreterModeVersionTest, OlderVersionsHaveNoInterpreterMode)

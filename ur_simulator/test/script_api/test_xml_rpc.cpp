@@ -107,7 +107,7 @@ TEST(XmlRpcTest, ALongListIsDecoded)
 TEST(XmlRpcTest, DeepNestingIsRejected)
 {
   std::string value = "<int>1</int>";
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 20; ++i) {
     value = "<array><data><value>" + value + "</value></data></array>";
   }
   EXPECT_NE(parsed(value).find("nested deeper"), std::string::npos);

@@ -32,13 +32,14 @@ TEST(ExtensionTest, TheCodeOfTheProgramKeepsItsPlace)
 {
   const auto library = standard_library();
   for (const char * text : programs) {
-    auto program = compile(text, *library);
+    const auto program = compile(text, *library);
     ASSERT_TRUE(program) << text;
+    ExtendedProgram extended(*program, *library);
     for (const char * statement : statements) {
-      const auto extended = extend(*program, statement, *library);
-      ASSERT_TRUE(extended) << statement << ": " << extended.error().text();
-      const Code & before = program->code();
-      const Code & after = extended->program.code();
+      const Code before = extended.code();
+      const auto function = extended.add(statement);
+      ASSERT_TRUE(function) << statement << ": " << function.error().text();
+      const Code & after = extended.code();
       ASSERT_LT(before.instructions.size(), after.instructions.size());
       EXPECT_TRUE(std::equal(before.instructions.begin(), before.instructions.end(),
                              after.instructions.begin(), same))
@@ -49,8 +50,7 @@ TEST(ExtensionTest, TheCodeOfTheProgramKeepsItsPlace)
       }
       EXPECT_TRUE(
           std::equal(before.global_names.begin(), before.global_names.end(), after.global_names.begin()));
-      EXPECT_GE(extended->function, before.functions.size());
-      program = extended->program;
+      EXPECT_GE(*function, before.functions.size());
     }
   }
 }
@@ -59,14 +59,37 @@ TEST(ExtensionTest, ErrorsNameTheLineOfTheStatements)
 {
   const auto library = standard_library();
   const auto program = compile(programs[0], *library);
-  const auto unknown = extend(*program, "e = missing(1)", *library);
+  ExtendedProgram extended(*program, *library);
+  const auto unknown = extended.add("e = missing(1)");
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().line, 1);
   EXPECT_EQ(unknown.error().undefined_name, "missing");
-  EXPECT_FALSE(extend(*program, "if True:", *library));
-  EXPECT_FALSE(extend(*program, "global new_one = 1", *library));
-  EXPECT_TRUE(extend(*program, "global a = 2", *library)) << "a global of the program";
-  EXPECT_FALSE(extend(*program, "def f(x): return x end", *library)) << "a function of the program";
+  EXPECT_FALSE(extended.add("if True:"));
+  EXPECT_FALSE(extended.add("global new_one = 1"));
+  EXPECT_TRUE(extended.add("global a = 2")) << "a global of the program";
+  EXPECT_FALSE(extended.add("def f(x): return x end")) << "a function of the program";
+}
+
+/// Nothing of a rejected statement is left: neither its code nor its names.
+TEST(ExtensionTest, StatementsThatDoNotCompileChangeNothing)
+{
+  const auto library = standard_library();
+  const auto program = compile(programs[1], *library);
+  ExtendedProgram extended(*program, *library);
+  ASSERT_TRUE(extended.add("good = 1"));
+  const Code before = extended.code();
+  EXPECT_FALSE(extended.add("bad = 1\ndef h(): return struct(n = [2]) end\nw = missing(h())"));
+  const Code & after = extended.code();
+  EXPECT_EQ(before.instructions.size(), after.instructions.size());
+  EXPECT_EQ(before.lines, after.lines);
+  EXPECT_EQ(before.constants.size(), after.constants.size());
+  EXPECT_EQ(before.functions.size(), after.functions.size());
+  EXPECT_EQ(before.global_names, after.global_names);
+  EXPECT_EQ(before.names, after.names);
+  EXPECT_EQ(before.lvalues.size(), after.lvalues.size());
+  EXPECT_EQ(extended.add("x = h()").error().undefined_name, "h");
+  EXPECT_FALSE(extended.add("x = bad"));
+  EXPECT_TRUE(extended.add("x = good"));
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ struct Function {
 struct Code {
   std::string name;
   bool secondary = false;
-  std::vector<std::string> sources;  ///< the text of the program and those of its extensions
+  std::string source;
   std::vector<Instruction> instructions;
   std::vector<std::int32_t> lines;  ///< source line of each instruction
   std::vector<Value> constants;

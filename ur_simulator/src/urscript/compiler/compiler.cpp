@@ -23,10 +23,13 @@ class Compiler : private ExpressionCompiler {
   /// Returns the function that executes the statements.
   std::uint32_t compile_extension(const Definition & statements)
   {
-    Scope & added = symbols().extend(statements);
+    const Scope & added = symbols().extend(statements);
     code().functions.resize(symbols().count());
     compile_function(statements);
-    code().global_names = symbols().global_names();
+    const auto & names = symbols().global_names();
+    code().global_names.insert(code().global_names.end(),
+                               names.begin() + static_cast<std::ptrdiff_t>(code().global_names.size()), names.end());
+    symbols().accept_extension(added);
     return added.function;
   }
 
@@ -259,55 +262,109 @@ std::string CompileError::text() const
          message;
 }
 
-namespace {
-
-/// Compiles the text of a program and those of its extensions. Returns the function of the last one.
-tl::expected<ExtendedProgram, CompileError> compile_sources(std::vector<std::string> sources,
-                                                            const Library & library,
-                                                            const CompileLimits & limits)
-{
-  std::vector<std::unique_ptr<Definition>> definitions;
-  for (const std::string & source : sources) {
-    auto definition = definitions.empty() ? parse(source, limits) : parse_statements(source, limits);
-    if (!definition) {
-      return tl::unexpected(definition.error());
-    }
-    definitions.push_back(std::move(*definition));
-  }
-  auto code = std::make_shared<Code>();
-  code->name = definitions.front()->name;
-  code->secondary = definitions.front()->kind == DefinitionKind::secondary;
-  code->sources = std::move(sources);
-  std::uint32_t function = 0;
-  try {
-    SymbolTable symbols(*definitions.front());
-    Compiler compiler(*code, symbols, library, limits);
-    compiler.compile_program(*definitions.front());
-    for (std::size_t i = 1; i < definitions.size(); ++i) {
-      function = compiler.compile_extension(*definitions[i]);
-    }
-  } catch (const CompileError & error) {
-    return tl::unexpected(error);
-  }
-  return ExtendedProgram{Program(std::move(code)), function};
-}
-
-}  // namespace
-
 tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
                                             const CompileLimits & limits)
 {
-  return compile_sources({std::string(text)}, library, limits).map([](ExtendedProgram compiled) {
-    return std::move(compiled.program);
-  });
+  const auto definition = parse(text, limits);
+  if (!definition) {
+    return tl::unexpected(definition.error());
+  }
+  auto code = std::make_shared<Code>();
+  code->name = (*definition)->name;
+  code->secondary = (*definition)->kind == DefinitionKind::secondary;
+  code->source = text;
+  try {
+    SymbolTable symbols(**definition);
+    Compiler(*code, symbols, library, limits).compile_program(**definition);
+  } catch (const CompileError & error) {
+    return tl::unexpected(error);
+  }
+  return Program(std::move(code));
 }
 
-tl::expected<ExtendedProgram, CompileError> extend(const Program & program, std::string_view statements,
-                                                   const Library & library, const CompileLimits & limits)
+class ExtendedProgram::Impl {
+ public:
+  Impl(const Program & program, const Library & library, const CompileLimits & limits)
+      : library_(library), limits_(limits), code_(program.code()), symbols_(parse_again(program.code().source))
+  {
+  }
+
+  tl::expected<std::uint32_t, CompileError> add(std::string_view statements)
+  {
+    auto parsed = parse_statements(statements, limits_);
+    if (!parsed) {
+      return tl::unexpected(parsed.error());
+    }
+    const CodeSize before(code_);
+    const std::size_t definitions = symbols_.count();
+    definitions_.push_back(std::move(*parsed));
+    try {
+      return Compiler(code_, symbols_, library_, limits_).compile_extension(*definitions_.back());
+    } catch (const CompileError & error) {
+      symbols_.reject_extension(definitions, before.globals());
+      before.restore(code_);
+      definitions_.pop_back();
+      return tl::unexpected(error);
+    }
+  }
+  const Code & code() const { return code_; }
+
+ private:
+  /// The program has been parsed before, without an error.
+  const Definition & parse_again(const std::string & source)
+  {
+    definitions_.push_back(std::move(parse(source, limits_).value()));
+    return *definitions_.front();
+  }
+
+  /// What was added to a Code since its construction can be removed.
+  class CodeSize {
+   public:
+    explicit CodeSize(const Code & code) : sizes_(apply(code, [](const auto & part) { return part.size(); })) {}
+    void restore(Code & code) const
+    {
+      auto size = sizes_.begin();
+      apply(code, [&size](auto & part) {
+        part.resize(*size);
+        return *size++;
+      });
+    }
+    std::size_t globals() const { return sizes_.back(); }
+
+   private:
+    template <class AnyCode, class Function>
+    static std::array<std::size_t, 9> apply(AnyCode & code, const Function & function)
+    {
+      return {function(code.instructions), function(code.lines),   function(code.constants),
+              function(code.functions),    function(code.names),   function(code.structure_types),
+              function(code.lvalues),      function(code.methods), function(code.global_names)};
+    }
+
+    std::array<std::size_t, 9> sizes_;
+  };
+
+  const Library & library_;
+  const CompileLimits limits_;
+  std::vector<std::unique_ptr<Definition>> definitions_;  ///< of the program and of all statements
+  Code code_;
+  SymbolTable symbols_;
+};
+
+ExtendedProgram::ExtendedProgram(const Program & program, const Library & library, const CompileLimits & limits)
+    : impl_(std::make_unique<Impl>(program, library, limits))
 {
-  std::vector<std::string> sources = program.code().sources;
-  sources.emplace_back(statements);
-  return compile_sources(std::move(sources), library, limits);
+}
+
+ExtendedProgram::~ExtendedProgram() = default;
+
+tl::expected<std::uint32_t, CompileError> ExtendedProgram::add(std::string_view statements)
+{
+  return impl_->add(statements);
+}
+
+const Code & ExtendedProgram::code() const
+{
+  return impl_->code();
 }
 
 }  // namespace ur_simulator::urscript

@@ -25,10 +25,23 @@ Scope & SymbolTable::extend(const Definition & statements)
   scope.top = true;
   scope.extension = true;
   visit_block(statements.body, scope);
-  for (const auto & [name, function] : scope.functions) {
-    top.functions.insert_or_assign(name, function);
-  }
   return scope;
+}
+
+void SymbolTable::accept_extension(const Scope & statements)
+{
+  for (const auto & [name, function] : statements.functions) {
+    scope_of(*definitions_.front()).functions.insert_or_assign(name, function);
+  }
+}
+
+void SymbolTable::reject_extension(std::size_t definitions, std::size_t globals)
+{
+  for (; definitions_.size() > definitions; definitions_.pop_back()) {
+    symbols_.erase(definitions_.back());
+  }
+  std::erase_if(extension_variables_, [globals](const auto & variable) { return variable.second >= globals; });
+  global_names_.resize(globals);
 }
 
 void SymbolTable::check_extension(const Statement & statement) const

@@ -48,6 +48,9 @@ class SymbolTable {
   /// Throws CompileError if they replace a function of the program or declare a new variable with the
   /// qualifier `global`.
   Scope & extend(const Definition & statements);
+  /// Lets later statements see the functions of these, or forgets these and what they declared.
+  void accept_extension(const Scope & statements);
+  void reject_extension(std::size_t definitions, std::size_t globals);
 
   const std::vector<std::string> & global_names() const { return global_names_; }
   Scope & scope_of(const Definition & definition) { return symbols_.at(&definition); }
