@@ -160,19 +160,28 @@ void Connection::flush_when_writable()
   socket_.async_wait(tcp::socket::wait_write,
                      [self = shared_from_this()](const boost::system::error_code & error) {
                        self->waiting_to_write_ = false;
-                       if (error || !self->open_ || self->stalled_) {
-                         return;
-                       }
-                       self->send_buffer_.erase(0, self->write_to_socket(self->send_buffer_));
-                       if (!self->open_) {
-                         return;
-                       }
-                       if (!self->send_buffer_.empty()) {
-                         self->flush_when_writable();
-                       } else if (self->close_after_sending_) {
-                         self->close(*self->close_after_sending_);
-                       }
+                       self->flush(error);
                      });
+}
+
+void Connection::flush(const boost::system::error_code & error)
+{
+  if (!open_ || stalled_) {
+    return;
+  }
+  if (!error) {
+    send_buffer_.erase(0, write_to_socket(send_buffer_));
+  } else if (error != asio::error::operation_aborted) {  // set_stalled() aborts the wait
+    handle_socket_error(error);
+  }
+  if (!open_) {
+    return;
+  }
+  if (!send_buffer_.empty()) {
+    flush_when_writable();
+  } else if (close_after_sending_ && delayed_.empty()) {
+    close(*close_after_sending_);
+  }
 }
 
 // ---- fault injection

@@ -78,6 +78,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void write(std::string_view bytes);
   std::size_t write_to_socket(std::string_view bytes);
   void flush_when_writable();
+  void flush(const boost::system::error_code & error);
   void handle_socket_error(const boost::system::error_code & error);
   void close_socket();
   void notify_closed();

@@ -6,6 +6,9 @@ std::shared_ptr<ScriptSocket> ProgramSockets::open(std::uint64_t program, const 
                                                    const std::string & address, std::uint16_t port)
 {
   close(program, name);
+  if (sockets_.size() == limit) {
+    return nullptr;
+  }
   return sockets_[{program, name}] = open_(address, port);
 }
 

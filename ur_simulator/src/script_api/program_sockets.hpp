@@ -15,7 +15,9 @@ class ProgramSockets {
  public:
   explicit ProgramSockets(OpenSocket open) : open_(std::move(open)) {}
 
-  /// Starts to connect. A socket of the same name is closed.
+  static constexpr std::size_t limit = 100;  ///< of all programs
+
+  /// Starts to connect. A socket of the same name is closed. nullptr if `limit` sockets are open.
   std::shared_ptr<ScriptSocket> open(std::uint64_t program, const std::string & name,
                                      const std::string & address, std::uint16_t port);
   /// nullptr if the program has no open socket of this name.

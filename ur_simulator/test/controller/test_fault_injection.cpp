@@ -51,6 +51,30 @@ TEST_F(FaultInjectionTest, DropsDelayedConnection)
   EXPECT_TRUE(client.socket().closed_by_peer());
 }
 
+/// A connection that waits until its peer reads, and is stalled and resumed before it notices either.
+TEST_F(FaultInjectionTest, AStallThatEndsAtOnceDoesNotSilenceAConnection)
+{
+  SimulatorOptions options;
+  options.real_time_factor = 50.0;
+  SimulatedController fast(with_unique_address(options));
+  RtdeClient idle(fast.address());
+  ASSERT_TRUE(idle.negotiate(2));
+  idle.setup_outputs(500.0, "timestamp,actual_q,actual_qd,actual_TCP_pose,target_q,target_qd,target_moment");
+  ASSERT_TRUE(idle.start());
+  const auto timestamp = [&] { return fast.state()["timestamp"].get<double>(); };
+  const double full = timestamp() + 60.0;  // 9 MB, more than the buffers of both ends
+  ASSERT_TRUE(fast.wait_until([&](const json & state) { return state["timestamp"].get<double>() > full; }, seconds(60)));
+  TcpClient control_port(fast.address(), fast.ports().control);
+  control_port.send("{\"command\": \"stall_links\", \"which\": \"rtde\"}\n"
+                    "{\"command\": \"stall_links\", \"which\": \"rtde\", \"stalled\": false}\n");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(json::parse(control_port.receive_line())["ok"]);
+  }
+  const double resumed = timestamp();
+  while (decode_double(idle.receive('U').payload.substr(1, 8)) <= resumed) {
+  }
+}
+
 TEST_F(FaultInjectionTest, LosesCommands)
 {
   RtdeClient client(controller.address());

@@ -132,6 +132,15 @@ TEST_F(SocketBuiltinTest, AReadEndsWhenAnotherThreadClosesTheSocket)
             "[0, -1]");
 }
 
+TEST_F(SocketBuiltinTest, TheNumberOfOpenSocketsIsLimited)
+{
+  run("i = 0\n while i < 300:\n socket_open(\"host\", 50001, to_str(i % 99))\n i = i + 1\n end\n x = 1");
+  ScriptRunner many("def many():\n i = 0\n while True:\n socket_open(\"host\", 50001, to_str(i))\n i = i + 1\n end\nend",
+                    library());
+  EXPECT_EQ(many.finish(3000), MachineStatus::failed);
+  EXPECT_NE(many.machine->error().message.find("100 sockets are open"), std::string::npos);
+}
+
 TEST_F(SocketBuiltinTest, SocketsAreClosedWhenTheProgramEndsHaltsOrFails)
 {
   for (const std::string end : {"", " halt", " x = 1 / 0"}) {

@@ -37,8 +37,11 @@ Outcome open_socket(ProgramSockets & sockets, CallContext & context, Arguments a
   if (!reader) {
     return reader.failure();
   }
-  return std::make_unique<ConnectOperation>(
-      sockets.open(context.program, name, address, static_cast<std::uint16_t>(port)));
+  auto socket = sockets.open(context.program, name, address, static_cast<std::uint16_t>(port));
+  if (!socket) {
+    return Failure{fmt::format("socket_open: {} sockets are open, close one first", ProgramSockets::limit)};
+  }
+  return std::make_unique<ConnectOperation>(std::move(socket));
 }
 
 Outcome close_socket(ProgramSockets & sockets, CallContext & context, Arguments arguments)
