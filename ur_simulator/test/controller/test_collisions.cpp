@@ -32,12 +32,12 @@ TEST_F(CollisionTest, WithABoxStopsTheArmWhichCanLeaveAfterwards)
   SimulatedController cell(options);
   const json pose = cell.state()["actual_tcp_pose"];
   ASSERT_TRUE(cell.control({{"command", "place_box"},
-                            {"center", {pose[0], pose[1].get<double>() + 0.45, pose[2].get<double>() + 0.12}},
+                            {"center", {pose[0], pose[1].get<double>() - 0.45, pose[2].get<double>() + 0.12}},
                             {"size", {0.3, 0.3, 0.3}}})["ok"]);
   const auto turn_to = [&](const std::string & angle) {
     return cell.control({{"command", "run_script"},
                          {"script", "def program():\n  movej([" + angle +
-                                        ", -1.57, -1.57, -1.57, 1.57, 0], a=3, v=1)\nend\n"}})["ok"] == true;
+                                        ", -1.57, 1.57, -1.57, -1.57, 0], a=3, v=1)\nend\n"}})["ok"] == true;
   };
   ASSERT_TRUE(turn_to("1.5"));
   ASSERT_TRUE(wait_for_safety_mode(cell, "PROTECTIVE_STOP", seconds(20)));
