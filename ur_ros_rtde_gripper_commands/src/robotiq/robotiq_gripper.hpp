@@ -9,8 +9,8 @@
 namespace ur_ros_rtde_gripper_commands {
 
 constexpr int max_register = 255;
-/// Register POS of closed fingers, as recorded with a 2F-85: they meet before the largest position that can be
-/// requested.
+/// Register POS of closed fingers, as recorded with a 2F-85: they meet before the largest position that can
+/// be requested.
 constexpr int closed_position = 227;
 
 /// The status registers (Robotiq, "2F-85 & 2F-140 Instruction Manual", register mapping).

@@ -13,11 +13,11 @@ namespace ur_simulator {
 class RobotiqGripper {
  public:
   static constexpr int closed_position = 227;  ///< register POS of the closed fingers (recorded); 0: open
-  static constexpr double stroke = 85.0;      ///< mm
-  static constexpr double min_speed = 20.0;   ///< mm/s, register SPE = 0
-  static constexpr double max_speed = 150.0;  ///< mm/s, register SPE = 255
-  static constexpr double min_force = 20.0;   ///< N, register FOR = 0
-  static constexpr double max_force = 235.0;  ///< N, register FOR = 255
+  static constexpr double stroke = 85.0;       ///< mm
+  static constexpr double min_speed = 20.0;    ///< mm/s, register SPE = 0
+  static constexpr double max_speed = 150.0;   ///< mm/s, register SPE = 255
+  static constexpr double min_force = 20.0;    ///< N, register FOR = 0
+  static constexpr double max_force = 235.0;   ///< N, register FOR = 255
 
   /// Register STA.
   enum class Status { reset = 0, activating = 1, active = 3 };

@@ -64,8 +64,8 @@ TEST_F(RobotiqServerTest, ValuesHaveTheFormatOfAGripper)
   EXPECT_EQ(get("PRE"), "PRE 077");
   EXPECT_EQ(get("FLT"), "FLT 00");
   EXPECT_EQ(get("SID"), "SID [9]");
-  for (const std::string name : {"MOD", "MSC", "VST", "COU", "SNU", "PYE", "NCY", "PON", "NPA", "FWV", "VER",
-                                 "DRI", "DST", "PCO"}) {
+  for (const std::string name :
+       {"MOD", "MSC", "VST", "COU", "SNU", "PYE", "NCY", "PON", "NPA", "FWV", "VER", "DRI", "DST", "PCO"}) {
     EXPECT_EQ(get(name).substr(0, 4), name + " ");
   }
 }
@@ -96,8 +96,8 @@ TEST_F(RobotiqServerTest, KnowsOneGripper)
   EXPECT_EQ(get("SID"), "SID []");
 }
 
-/// A program that speaks with the URCap as one with a node of Robotiq does: values without line ends, requests
-/// in several pieces, and 17 bytes for the list of grippers.
+/// A program that speaks with the URCap as one with a node of Robotiq does: values without line ends,
+/// requests in several pieces, and 17 bytes for the list of grippers.
 std::string pendant_program(const std::string & address)
 {
   return "def with_gripper():\n  socket_open(\"" + address + R"(", 63352, "1")
@@ -152,8 +152,8 @@ end
 
 TEST_F(RobotiqServerTest, ServesAProgramWithAGripperNode)
 {
-  const json reply = controller.control(
-      {{"command", "run_script"}, {"script", pendant_program(controller.address())}});
+  const json reply =
+      controller.control({{"command", "run_script"}, {"script", pendant_program(controller.address())}});
   ASSERT_TRUE(reply["ok"]) << reply.dump();
   ASSERT_TRUE(controller.wait_until([](const json & state) { return state["program"]["state"] == "STOPPED"; },
                                     seconds(60)));

@@ -99,8 +99,8 @@ TEST_F(ScriptSocketTest, ASecondaryProgramMayOpenASocket)
        {"script", "sec set_speed():\n  socket_open(\"" + controller.address() +
                       "\", 30003)\n  socket_send_line(\"set speed 0.5\")\n  socket_close()\nend\n"}});
   ASSERT_TRUE(reply["ok"]) << reply.dump();
-  EXPECT_TRUE(controller.wait_until([](const json & state) { return state["speed_slider"] == 0.5; },
-                                    seconds(10)));
+  EXPECT_TRUE(
+      controller.wait_until([](const json & state) { return state["speed_slider"] == 0.5; }, seconds(10)));
 }
 
 TEST_F(ScriptSocketTest, ASecondaryProgramDoesNotWaitForASlowHost)
@@ -110,7 +110,8 @@ TEST_F(ScriptSocketTest, ASecondaryProgramDoesNotWaitForASlowHost)
        {"script", "sec ask():\n  socket_open(\"" + controller.address() + "\", " +
                       std::to_string(host.port()) + ")\n  socket_read_line()\n  textmsg(\"never\")\nend\n"}});
   ASSERT_TRUE(reply["ok"]) << reply.dump();
-  EXPECT_TRUE(wait_for_log(controller, "secondary program 'ask' failed in line 3: Runtime is too much behind"));
+  EXPECT_TRUE(
+      wait_for_log(controller, "secondary program 'ask' failed in line 3: Runtime is too much behind"));
   EXPECT_FALSE(log_contains(controller, "never"));
 }
 

@@ -85,10 +85,10 @@ TEST(InstallationBuiltinsTest, SetsPayloadTcpAndGravity)
   EXPECT_EQ(fixture.global("tcp"), "p[0, 0, 0.1, 0, 0, 0]");
   EXPECT_EQ(fixture.state.payload.inertia[2], 0.03);
   EXPECT_EQ(fixture.state.gravity.y(), 9.82);
-  EXPECT_EQ(fixture.global("pose"),
-            urscript::Value::pose(
-                tcp_pose(fixture.model, fixture.state.actual.position, fixture.state.tcp_offset))
-                .text());
+  EXPECT_EQ(
+      fixture.global("pose"),
+      urscript::Value::pose(tcp_pose(fixture.model, fixture.state.actual.position, fixture.state.tcp_offset))
+          .text());
   EXPECT_NE(fixture.error_of("set_payload(100)").find("kg for a UR10e, is 100 kg"), std::string::npos);
   EXPECT_NE(fixture.error_of("set_payload(-1)").find("kg for a UR10e, is -1 kg"), std::string::npos);
 }

@@ -31,7 +31,8 @@ TEST(CompileErrorTest, ChecksArguments)
 
 TEST(CompileErrorTest, ContainsTheLineOfASyntaxError)
 {
-  EXPECT_EQ(compile_error("def test():\r\n  if True\r\n    x = 1\r\n  end\r\nend\r\n").source_line, "    x = 1");
+  EXPECT_EQ(compile_error("def test():\r\n  if True\r\n    x = 1\r\n  end\r\nend\r\n").source_line,
+            "    x = 1");
   EXPECT_EQ(compile_error("def test():\n  x = 1\n").source_line, "");
   EXPECT_EQ(compile_error("x = (").source_line, "x = (");
   EXPECT_EQ(compile_error("x = y").source_line, std::nullopt);

@@ -26,9 +26,8 @@ class QuickCall final : public Operation {
       return result;
     }
     call_->cancel();
-    return tl::unexpected(
-        fmt::format("Runtime is too much behind: the other machine did not answer within {} s",
-                    quick_call_limit));
+    return tl::unexpected(fmt::format(
+        "Runtime is too much behind: the other machine did not answer within {} s", quick_call_limit));
   }
   void cancel() override { call_->cancel(); }
 
