@@ -102,7 +102,7 @@ def test_a_program_calls_functions_of_a_server(robot):
 end
 ''')
         wait_for_log("again True")
-        wait_for_log("target p[0.5, -0.25, 0.75, 0, 3, 0]")
+        wait_for_log("target p[0.5,-0.25,0.75,0,3,0]")
         wait_for_log("element 3")
     pose = {"x": 1.0, "y": 2.0, "z": 3.0, "rx": 0.0, "ry": 0.0, "rz": 0.0}
     assert camera.received == [("RGB", True, 3, 0.5, pose, [1, "a"]), ()]

@@ -10,7 +10,8 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 PLUGINS = "plugins:=[move_j,stop,robotiq_activate,robotiq_move,robotiq_open,robotiq_close,robotiq_get_status]"
 STROKE = 0.085  # m
-STEP = STROKE / 255  # m, resolution of the gripper
+CLOSED = 227  # register POS of the closed fingers
+STEP = STROKE / CLOSED  # m, resolution of the gripper
 
 
 def registers(simulator):
@@ -46,9 +47,15 @@ def test_moves_to_the_width_at_the_speed(gripper, simulator):
     result = gripper.send(RobotiqMove, "robotiq_move", width=0.025, speed_fraction=0.0).succeeded()
     duration = simulator.state()["timestamp"] - begin
     assert result.width == pytest.approx(0.025, abs=STEP) and not result.object_detected
-    assert registers(simulator)["POS"] == result.position == 180
+    assert registers(simulator)["POS"] == result.position == 160
     assert duration > 0.06 / 0.02  # 60 mm at 20 mm/s, the slowest speed
     assert registers(simulator)["SPE"] == 0 and registers(simulator)["FOR"] == 128
+
+
+def test_closes_completely(gripper, simulator):
+    result = gripper.send(RobotiqGrip, "robotiq_close").succeeded()
+    assert registers(simulator)["PRE"] == 255 and result.position == CLOSED
+    assert result.width == 0.0 and not result.object_detected
 
 
 def test_detects_an_object(gripper, simulator):
@@ -73,7 +80,7 @@ def test_cancel_stops_the_fingers(gripper, simulator):
     goal.cancel()
     assert goal.result().error_code == ErrorCode.CANCELED
     stopped = registers(simulator)
-    assert stopped["GTO"] == 0 and stopped["POS"] < 255
+    assert stopped["GTO"] == 0 and stopped["POS"] < CLOSED
     assert goal.result().width == pytest.approx(STROKE - stopped["POS"] * STEP, abs=0.005)
 
 
@@ -184,4 +191,4 @@ def test_cancel_stops_an_activation(gripper, simulator):
     goal.cancel()
     assert goal.result().error_code == ErrorCode.CANCELED
     stopped = registers(simulator)
-    assert stopped["ACT"] == 0 and 0 < stopped["POS"] < 255
+    assert stopped["ACT"] == 0 and 0 < stopped["POS"] < CLOSED

@@ -1,7 +1,9 @@
+#include <string>
+
 #include "input.hpp"
 #include "urcap/robotiq_server.hpp"
 
-// Lines for the socket server of Robotiq's URCap.
+// Requests, with and without line ends, for the socket server of Robotiq's URCap.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size)
 {
@@ -13,7 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t siz
   ur_fuzz::Input input(data, size);
   gripper.step(0.002, input.take_option() % 2 == 0);
   while (!input.empty()) {
-    (void)server.answer(input.take_line());
+    const std::string request(input.take_line());
+    (void)server.answer(request);
+    (void)server.answer(request + "\n");
   }
   return 0;
 }

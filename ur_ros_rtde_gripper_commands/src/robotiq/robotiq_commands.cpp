@@ -131,7 +131,7 @@ UR_ROS_RTDE_EXPORT(RobotiqOpen, "robotiq_open")
 
 class RobotiqClose : public RobotiqGrip {
  public:
-  RobotiqClose() : RobotiqGrip(closed_position) {}
+  RobotiqClose() : RobotiqGrip(max_register) {}
 };
 
 UR_ROS_RTDE_EXPORT(RobotiqClose, "robotiq_close")

@@ -69,7 +69,7 @@ std::string robotiq_fault_text(int fault)
 
 double to_width(int position, double stroke)
 {
-  return stroke * (1.0 - static_cast<double>(position) / closed_position);
+  return stroke * (1.0 - static_cast<double>(std::min(position, closed_position)) / closed_position);
 }
 
 int to_position(double width, double stroke)

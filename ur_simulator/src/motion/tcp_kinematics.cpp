@@ -49,13 +49,18 @@ std::optional<MotionFault> TcpKinematics::move_to(const Transform & pose, double
     return unreachable_fault(setpoint.position);
   }
   const Vector6 velocity = (*next - setpoint.position) / duration;
-  Eigen::Index worst = 0;
-  const double excess = velocity.cwiseAbs().cwiseQuotient(model_->velocity_max).maxCoeff(&worst);
-  const double jump = (velocity - setpoint.velocity).cwiseAbs().maxCoeff();
-  if (excess > 1.0 + 1e-6 || jump > 2.0 * model_->acceleration_max[worst] * duration) {
+  Eigen::Index fastest = 0, jumping = 0;
+  const double speed_ratio = velocity.cwiseAbs().cwiseQuotient(model_->velocity_max).maxCoeff(&fastest);
+  const double jump = (velocity - setpoint.velocity).cwiseAbs().maxCoeff(&jumping);
+  const bool too_fast = speed_ratio > 1.0 + 1e-6;
+  const double max_acceleration = 2.0 * model_->acceleration_max[jumping];
+  if (too_fast || jump > max_acceleration * duration) {
     const bool singular = singularity_distance(*model_, setpoint.position) < near_singularity;
-    return MotionFault{singular ? MotionFault::Kind::singularity : MotionFault::Kind::joint_speed_limit,
-                       static_cast<int>(worst), std::abs(velocity[worst]), model_->velocity_max[worst]};
+    const auto kind = singular ? MotionFault::Kind::singularity : MotionFault::Kind::joint_speed_limit;
+    return too_fast ? MotionFault{kind, static_cast<int>(fastest), std::abs(velocity[fastest]),
+                                  model_->velocity_max[fastest]}
+                    : MotionFault{kind, static_cast<int>(jumping), jump / duration, max_acceleration,
+                                  MotionFault::Quantity::acceleration};
   }
   setpoint = {*next, velocity};
   return std::nullopt;

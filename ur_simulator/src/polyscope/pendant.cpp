@@ -33,6 +33,18 @@ std::string receive_failed_popup(const ProgramHost & host, const std::string & r
       host.address, host.port, reason);
 }
 
+/// The text of the runtime exception message; "" for errors of which the text on a robot is not known.
+std::string exception_text(const urscript::CompileError & error)
+{
+  if (!error.undefined_name.empty()) {
+    return fmt::format("compile_error_name_not_found:{}:", error.undefined_name);
+  }
+  constexpr std::size_t longest_line = 500;
+  return error.source_line ? fmt::format("syntax_error_on_line:{}:{}:", error.line,
+                                         std::string_view(*error.source_line).substr(0, longest_line))
+                           : "";
+}
+
 tl::unexpected<std::string> rejection(std::string reason)
 {
   return tl::make_unexpected(std::move(reason));
@@ -171,9 +183,7 @@ void Pendant::log_compile_error(const urscript::CompileError & error)
   entry.text = "script was not started: " + error.text();
   entry.line = error.line;
   entry.column = error.column;
-  if (!error.undefined_name.empty()) {
-    entry.exception = fmt::format("compile_error_name_not_found:{}:", error.undefined_name);
-  }
+  entry.exception = exception_text(error);
   log_.add(std::move(entry));
 }
 

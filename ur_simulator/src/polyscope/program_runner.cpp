@@ -174,6 +174,7 @@ void ProgramRunner::run_program()
                        fmt::format("program '{}' failed in line {}: {}", program_name_,
                                    program_->error().line, program_->error().message),
                        program_->error().line);
+      log(LogKind::program_ended, fmt::format("program '{}' ended by the error", program_name_));
       break;
   }
   end_program(RuntimeState::stopping);
@@ -184,13 +185,22 @@ void ProgramRunner::run_secondary_programs()
   std::erase_if(secondary_programs_, [this](const std::unique_ptr<urscript::Machine> & machine) {
     const urscript::MachineStatus status = machine->cycle();
     if (status == urscript::MachineStatus::failed) {
-      context_.log.add(LogLevel::error, program_source,
-                       fmt::format("secondary program '{}' failed in line {}: {}", machine->program().name(),
-                                   machine->error().line, machine->error().message),
-                       machine->error().line);
+      log_secondary_error(*machine);
     }
     return status != urscript::MachineStatus::running;
   });
+}
+
+void ProgramRunner::log_secondary_error(const urscript::Machine & machine)
+{
+  LogEntry entry;
+  entry.level = LogLevel::error;
+  entry.source = program_source;
+  entry.text = fmt::format("secondary program '{}' failed in line {}: {}", machine.program().name(),
+                           machine.error().line, machine.error().message);
+  entry.line = machine.error().line;
+  entry.exception = "SECONDARY_PROGRAM_EXCEPTION_XXX" + machine.error().message;
+  context_.log.add(std::move(entry));
 }
 
 void ProgramRunner::text_message(const std::string & text)

@@ -81,6 +81,7 @@ class ProgramRunner final : public urscript::Host {
   void start_secondary(std::unique_ptr<urscript::Machine> machine);
   void run_program();
   void run_secondary_programs();
+  void log_secondary_error(const urscript::Machine & machine);
   /// Completes pausing, resuming and stopping once the arm has reached the corresponding state.
   void update_runtime_state();
   void end_program(RuntimeState next);

@@ -43,6 +43,8 @@ constexpr FunctionGroup version_groups[] = {
     {{{5, 6}, never},
      "path_offset_disable path_offset_enable path_offset_get path_offset_set "
      "path_offset_set_alpha_filter path_offset_set_max_offset"},
+    // reported by users of UR's simulator: 5.9.4 compiles it, 5.8.2 does not; ur_rtde needs 5.10 or 3.15
+    {{{5, 9}, {3, 14}}, "get_inverse_kin_has_solution"},
     // UR's external control program
     {{{5, 9, 1}, {3, 14, 1}}, "ft_rtde_input_enable"},
     // UR, "Interpreter mode"

@@ -1,5 +1,6 @@
 #include "script_api/socket_extractors.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -173,6 +174,18 @@ std::string interpret_escapes(const std::string & text)
     }
   }
   return result;
+}
+
+Value available_bytes(std::string & received, std::size_t number)
+{
+  const std::size_t available = std::min(number, received.size());
+  List values(number + 1, Value(-1));
+  values.front() = Value(static_cast<std::int32_t>(available));
+  for (std::size_t i = 0; i < available; ++i) {
+    values[i + 1] = Value(static_cast<std::int32_t>(static_cast<std::uint8_t>(received[i])));
+  }
+  received.erase(0, available);
+  return values;
 }
 
 Value failed_numbers(std::size_t number, const Value & value)

@@ -26,6 +26,9 @@ Extractor float_extractor(std::size_t number);
 /// The number of the line "NAME number"; 0 if the line is different.
 Extractor variable_extractor(std::string name);
 
+/// Removes at most `number` bytes: [count, byte, …, -1, …].
+urscript::Value available_bytes(std::string & received, std::size_t number);
+
 /// Replaces the escape sequences \n, \r and \t.
 std::string interpret_escapes(const std::string & text);
 

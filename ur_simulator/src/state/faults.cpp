@@ -6,6 +6,18 @@
 
 namespace ur_simulator {
 
+namespace {
+
+/// "turn at 3.50 rad/s (limit 3.14 rad/s)"
+std::string joint_motion(const MotionFault & fault)
+{
+  return fault.quantity == MotionFault::Quantity::speed
+             ? fmt::format("turn at {:.2f} rad/s (limit {:.2f} rad/s)", fault.value, fault.limit)
+             : fmt::format("accelerate at {:.0f} rad/s^2 (limit {:.0f} rad/s^2)", fault.value, fault.limit);
+}
+
+}  // namespace
+
 std::string describe(const MotionFault & fault)
 {
   static constexpr std::array<const char *, 6> names{"base",    "shoulder", "elbow",
@@ -15,17 +27,14 @@ std::string describe(const MotionFault & fault)
   switch (fault.kind) {
     case MotionFault::Kind::singularity:
       return fmt::format(
-          "the path leads through a singularity: joint {} would have to turn at {:.2f} rad/s (limit {:.2f} "
-          "rad/s); "
-          "move there with movej, or choose another path",
-          joint, fault.value, fault.limit);
+          "the path leads through a singularity: joint {} would have to {}; move there with movej, or choose "
+          "another path",
+          joint, joint_motion(fault));
     case MotionFault::Kind::joint_position_limit:
       return fmt::format("joint {} reached its position limit: {:.4f} rad (limit {:.4f} rad)", joint,
                          fault.value, fault.limit);
     case MotionFault::Kind::joint_speed_limit:
-      return fmt::format(
-          "joint {} would exceed its speed limit: {:.3f} rad/s (limit {:.3f} rad/s); move slower", joint,
-          fault.value, fault.limit);
+      return fmt::format("joint {} would have to {}; move slower", joint, joint_motion(fault));
     case MotionFault::Kind::force_mode_deviation:
       return fmt::format(
           "force mode: the TCP deviates by {:.4f} m or rad from the program along axis {} of the task frame, "

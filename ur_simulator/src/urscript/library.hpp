@@ -53,6 +53,8 @@ class Operation {
   /// Asked after each poll() without a value: a function of the program that the thread executes before the
   /// next poll().
   virtual std::optional<std::uint32_t> next_function() { return std::nullopt; }
+  /// Whether it only waits for another machine. A secondary program may call it if the wait is short.
+  virtual bool is_network_call() const { return false; }
   /// The thread was killed or the program stopped; poll() is not called again.
   virtual void cancel() {}
 };

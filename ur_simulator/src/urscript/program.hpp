@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -17,6 +18,7 @@ struct CompileError {
   std::int32_t column = 0;
   std::string message;
   std::string undefined_name = {};  ///< if the error is that a function, thread or variable is not defined
+  std::optional<std::string> source_line = std::nullopt;  ///< the text of the line, of a syntax error
 
   /// "Compile error on line 3, column 5: …"
   std::string text() const;

@@ -9,98 +9,130 @@ namespace ur_simulator::urscript {
 
 namespace {
 
-// Limit of textmsg() and to_str(). Values may share storage, so that their text can be much larger than their
-// memory.
+// Values may share storage, so that their text can be much larger than their memory.
 constexpr std::size_t text_limit = 16384;
 
-void append_text(std::string & out, const Value & value, bool nested);
-
-template <typename Elements>
-void append_elements(std::string & out, const Elements & elements)
+/// Six decimals, without trailing zeros.
+std::string fixed_text(double value)
 {
-  bool first = true;
-  for (const auto & element : elements) {
-    if (!first) {
-      out += ", ";
+  std::string text = fmt::format("{:.6f}", value);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    text.erase(text.find_last_not_of('.') + 1);
+  }
+  return text == "-0" ? "0" : text;
+}
+
+class TextWriter {
+ public:
+  explicit TextWriter(TextFormat format) : format_(format) {}
+
+  void append(const Value & value, bool nested)
+  {
+    if (is_full()) {
+      return;
     }
-    first = false;
-    append_text(out, Value(element), true);
-    if (out.size() > text_limit) {
-      return;
+    switch (value.type()) {
+      case Type::none:
+        out_ += "None";
+        return;
+      case Type::boolean:
+        out_ += value.boolean() ? "True" : "False";
+        return;
+      case Type::integer:
+        out_ += std::to_string(value.integer());
+        return;
+      case Type::floating:
+        append(value.floating());
+        return;
+      case Type::string:
+        out_ += nested ? "\"" : "";
+        out_ += value.string();
+        out_ += nested ? "\"" : "";
+        return;
+      case Type::pose:
+        out_ += "p[";
+        append_elements(value.pose(), format_ == TextFormat::message ? "," : ", ");
+        out_ += ']';
+        return;
+      case Type::list:
+        out_ += '[';
+        append_elements(value.list(), ", ");
+        out_ += ']';
+        return;
+      case Type::matrix:
+        append(value.matrix());
+        return;
+      case Type::structure:
+        append(value.structure());
+        return;
+      case Type::remote:
+        out_ += "RPC";
+        return;
     }
   }
-}
 
-void append_matrix(std::string & out, const Matrix & matrix)
-{
-  for (std::size_t row = 0; row < matrix.rows && out.size() <= text_limit; ++row) {
-    out += row == 0 ? "[[" : ", [";
-    for (std::size_t column = 0; column < matrix.columns; ++column) {
-      fmt::format_to(std::back_inserter(out), "{}{}", column == 0 ? "" : ", ", matrix.at(row, column));
+  std::string take()
+  {
+    if (is_full()) {
+      out_.resize(text_limit);
+      out_ += "...";
     }
-    out += ']';
+    return std::move(out_);
   }
-  out += ']';
-}
 
-void append_structure(std::string & out, const Structure & structure)
-{
-  out += "struct(";
-  bool first = true;
-  for (const auto & [name, member] : structure.members) {
-    out += first ? "" : ", ";
-    out += name;
-    out += '=';
-    first = false;
-    append_text(out, member, true);
-  }
-  out += ')';
-}
+ private:
+  bool is_full() const { return out_.size() > text_limit; }
 
-void append_text(std::string & out, const Value & value, bool nested)
-{
-  if (out.size() > text_limit) {
-    return;
+  void append(double value)
+  {
+    out_ += format_ == TextFormat::message ? fmt::format("{:g}", value) : fixed_text(value);
   }
-  switch (value.type()) {
-    case Type::none:
-      out += "None";
-      return;
-    case Type::boolean:
-      out += value.boolean() ? "True" : "False";
-      return;
-    case Type::integer:
-      out += std::to_string(value.integer());
-      return;
-    case Type::floating:
-      fmt::format_to(std::back_inserter(out), "{}", value.floating());
-      return;
-    case Type::string:
-      out += nested ? "\"" : "";
-      out += value.string();
-      out += nested ? "\"" : "";
-      return;
-    case Type::pose:
-      out += "p[";
-      append_elements(out, value.pose());
-      out += ']';
-      return;
-    case Type::list:
-      out += '[';
-      append_elements(out, value.list());
-      out += ']';
-      return;
-    case Type::matrix:
-      append_matrix(out, value.matrix());
-      return;
-    case Type::structure:
-      append_structure(out, value.structure());
-      return;
-    case Type::remote:
-      out += "RPC";
-      return;
+
+  template <typename Elements>
+  void append_elements(const Elements & elements, const char * separator)
+  {
+    bool first = true;
+    for (const auto & element : elements) {
+      out_ += first ? "" : separator;
+      first = false;
+      append(Value(element), true);
+      if (is_full()) {
+        return;
+      }
+    }
   }
-}
+
+  void append(const Matrix & matrix)
+  {
+    for (std::size_t row = 0; row < matrix.rows && !is_full(); ++row) {
+      out_ += row == 0 ? "[[" : ", [";
+      for (std::size_t column = 0; column < matrix.columns && !is_full(); ++column) {
+        out_ += column == 0 ? "" : ", ";
+        append(matrix.at(row, column));
+      }
+      out_ += ']';
+    }
+    out_ += ']';
+  }
+
+  void append(const Structure & structure)
+  {
+    out_ += "struct(";
+    bool first = true;
+    for (const auto & [name, member] : structure.members) {
+      out_ += first ? "" : ", ";
+      out_ += name;
+      out_ += '=';
+      first = false;
+      append(member, true);
+    }
+    out_ += ')';
+  }
+
+  TextFormat format_;
+  std::string out_;
+};
 
 bool equal_lists(const List & left, const List & right)
 {
@@ -201,15 +233,11 @@ std::optional<Vector3> Value::vector3() const
   return to_vector<Vector3>(*this);
 }
 
-std::string Value::text() const
+std::string Value::text(TextFormat format) const
 {
-  std::string out;
-  append_text(out, *this, false);
-  if (out.size() > text_limit) {
-    out.resize(text_limit);
-    out += "...";
-  }
-  return out;
+  TextWriter writer(format);
+  writer.append(*this, false);
+  return writer.take();
 }
 
 Value * Structure::find(std::string_view name)

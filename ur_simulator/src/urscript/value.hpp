@@ -33,6 +33,12 @@ class RemoteObject;
 
 using List = std::vector<Value>;
 
+/// How a value is written.
+enum class TextFormat : std::uint8_t {
+  string,  ///< to_str(), str_cat(): six decimals without trailing zeros (script manual)
+  message  ///< textmsg(), socket_send_string(): six significant digits, poses without blanks (recorded)
+};
+
 /// A matrix of numbers (script manual, "Matrix and Array Expressions").
 struct Matrix {
   std::size_t rows = 0;
@@ -107,8 +113,8 @@ class Value {
   std::optional<Vector6> vector6() const;
   std::optional<Vector3> vector3() const;
 
-  /// The text of to_str() and textmsg(): True, 3, 0.5, [1, 2], p[…]; strings have no quotes at the top level.
-  std::string text() const;
+  /// True, 3, 0.5, [1, 2], p[…]; strings have no quotes at the top level.
+  std::string text(TextFormat format = TextFormat::string) const;
 
  private:
   template <typename T>

@@ -8,7 +8,6 @@
 namespace ur_simulator {
 namespace {
 
-constexpr double closed_position = 255.0;
 constexpr double release_speed = 20.0;  // mm/s
 constexpr int first_major_fault = 10;   // from here on, a reset is required
 constexpr int activation_required_fault = 7;
@@ -26,11 +25,13 @@ double scale(int value, double min, double max)
 
 int RobotiqGripper::Requests::* RobotiqGripper::request(std::string_view name)
 {
-  constexpr std::array<std::pair<std::string_view, int Requests::*>, 7> names{
+  constexpr std::array<std::pair<std::string_view, int Requests::*>, 9> names{
       {{"ACT", &Requests::activate},
+       {"MOD", &Requests::mode},
        {"GTO", &Requests::go_to},
        {"ATR", &Requests::release},
        {"ARD", &Requests::release_closes},
+       {"MSC", &Requests::max_current},
        {"POS", &Requests::position},
        {"SPE", &Requests::speed},
        {"FOR", &Requests::force}}};
@@ -165,8 +166,9 @@ double RobotiqGripper::holding_position(int force) const
   return width > 0.0 ? closed_position * (1.0 - width / stroke) : std::numeric_limits<double>::infinity();
 }
 
-void RobotiqGripper::move(double target, double speed, double duration)
+void RobotiqGripper::move(double requested, double speed, double duration)
 {
+  const double target = std::min<double>(requested, closed_position);
   const double per_millimeter = closed_position / stroke;
   const double step = stuck_ ? 0.0 : speed * per_millimeter * duration;
   double next = position_ + std::clamp(target - position_, -step, step);

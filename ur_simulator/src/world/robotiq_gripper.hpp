@@ -8,15 +8,16 @@
 namespace ur_simulator {
 
 /// Model of a Robotiq 2F-85 gripper: its registers and the motion of its fingers (Robotiq, "2F-85 & 2F-140
-/// Instruction Manual", register mapping). Positions are 0 (open) to 255 (closed) and linear in the width
-/// between the fingers.
+/// Instruction Manual", register mapping). The position is linear in the width between the fingers. They meet
+/// before the largest position that can be requested, as those of a real gripper.
 class RobotiqGripper {
  public:
-  static constexpr double stroke = 85.0;      ///< mm
-  static constexpr double min_speed = 20.0;   ///< mm/s, register SPE = 0
-  static constexpr double max_speed = 150.0;  ///< mm/s, register SPE = 255
-  static constexpr double min_force = 20.0;   ///< N, register FOR = 0
-  static constexpr double max_force = 235.0;  ///< N, register FOR = 255
+  static constexpr int closed_position = 227;  ///< register POS of the closed fingers (recorded); 0: open
+  static constexpr double stroke = 85.0;       ///< mm
+  static constexpr double min_speed = 20.0;    ///< mm/s, register SPE = 0
+  static constexpr double max_speed = 150.0;   ///< mm/s, register SPE = 255
+  static constexpr double min_force = 20.0;    ///< N, register FOR = 0
+  static constexpr double max_force = 235.0;   ///< N, register FOR = 255
 
   /// Register STA.
   enum class Status { reset = 0, activating = 1, active = 3 };
@@ -29,8 +30,9 @@ class RobotiqGripper {
 
   /// The value of a register; nothing if there is none with this name.
   std::optional<int> get(std::string_view name) const;
-  /// Writes a register of the requests: ACT, GTO, ATR, ARD, POS, SPE or FOR, 0 to 255. The gripper evaluates
-  /// it in the next cycle. False if there is no such register, or the value is out of range.
+  /// Writes a register of the requests: ACT, MOD, GTO, ATR, ARD, MSC, POS, SPE or FOR, 0 to 255. The gripper
+  /// evaluates it in the next cycle; MOD and MSC have no effect. False if there is no such register, or the
+  /// value is out of range.
   bool set(std::string_view name, int value);
 
   /// Activates the gripper without a motion, as if that had happened before.
@@ -50,13 +52,14 @@ class RobotiqGripper {
   struct Requests {
     int activate = 0, go_to = 0, release = 0, release_closes = 0;
     int position = 0, speed = 0, force = 0;
+    int mode = 0, max_current = 0;
   };
 
   static int Requests::* request(std::string_view name);
   void reset();
   void activate(double duration);
   void release(double duration);
-  void move(double target, double speed, double duration);
+  void move(double requested, double speed, double duration);
   double speed() const;
   double holding_position(int force) const;
   int fault() const;

@@ -207,6 +207,34 @@ TEST_F(PrimaryInterfaceTest, NamesUndefinedFunctionAsRobotDoes)
   EXPECT_EQ(message.substr(19), "compile_error_name_not_found:no_such_function:");
 }
 
+// Recorded: the text of a client's program whose second line lacks a parenthesis.
+TEST_F(PrimaryInterfaceTest, QuotesTheLineOfASyntaxErrorAsRobotDoes)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def bad():\n  textmsg(\"log \", get_actual_tcp_pose()\nend\n");
+  const std::string message = client.receive_robot_message(10);
+  EXPECT_EQ(decode_uint(message.substr(11, 4)), 3u);
+  EXPECT_EQ(message.substr(19), "syntax_error_on_line:3:end:");
+  client.socket().send("def bad():\n  while True\n    sync()\n  end\nend\n");
+  EXPECT_EQ(client.receive_robot_message(10).substr(19), "syntax_error_on_line:3:    sync():");
+}
+
+TEST_F(PrimaryInterfaceTest, NamesTheErrorOfASecondaryProgramAsRobotDoes)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("sec bad():\n  a = [1, 2]\n  b = a[7]\nend\n");
+  EXPECT_EQ(client.receive_robot_message(10).substr(19),
+            "SECONDARY_PROGRAM_EXCEPTION_XXXindex 7 is out of range: the list has 2 elements");
+}
+
+TEST_F(PrimaryInterfaceTest, AFailedProgramIsReportedAsStopped)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def fails():\n  sync()\n  a = [1, 2]\n  b = a[7]\nend\n");
+  EXPECT_NE(client.receive_robot_message(10).find("failed in line 4"), std::string::npos);
+  EXPECT_NE(client.receive_robot_message(7).find("PROGRAM_XXX_STOPPEDfails"), std::string::npos);
+}
+
 TEST_F(PrimaryInterfaceTest, SecondaryProgramTriggersProtectiveStop)
 {
   PrimaryClient client(controller.address(), 30001);

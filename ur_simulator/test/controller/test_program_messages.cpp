@@ -85,6 +85,13 @@ TEST_F(GlobalVariablesTest, SendsTheLastValuesOfAShortProgram)
   EXPECT_EQ(receive_variables(client, values_message), "\x0f" + encode_int32(4) + "\n");
 }
 
+TEST_F(GlobalVariablesTest, SendsTheLastValuesOfAFailedProgram)
+{
+  PrimaryClient client(controller.address(), 30001);
+  client.socket().send("def short():\n  global a = 3\n  a = a + 1\n  a = a / 0\nend\n");
+  EXPECT_EQ(receive_variables(client, values_message), "\x0f" + encode_int32(4) + "\n");
+}
+
 TEST_F(GlobalVariablesTest, ANewClientReceivesThemDuringAProgram)
 {
   controller.control({{"command", "run_script"}, {"script", program}});

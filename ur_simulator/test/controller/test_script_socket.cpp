@@ -91,6 +91,30 @@ TEST_F(ScriptSocketTest, IsNotClosedByASecondaryProgram)
   EXPECT_TRUE(log_contains(controller, "heard: fine"));
 }
 
+// A public client sets the speed slider like this.
+TEST_F(ScriptSocketTest, ASecondaryProgramMayOpenASocket)
+{
+  const json reply = controller.control(
+      {{"command", "run_script"},
+       {"script", "sec set_speed():\n  socket_open(\"" + controller.address() +
+                      "\", 30003)\n  socket_send_line(\"set speed 0.5\")\n  socket_close()\nend\n"}});
+  ASSERT_TRUE(reply["ok"]) << reply.dump();
+  EXPECT_TRUE(
+      controller.wait_until([](const json & state) { return state["speed_slider"] == 0.5; }, seconds(10)));
+}
+
+TEST_F(ScriptSocketTest, ASecondaryProgramDoesNotWaitForASlowHost)
+{
+  const json reply = controller.control(
+      {{"command", "run_script"},
+       {"script", "sec ask():\n  socket_open(\"" + controller.address() + "\", " +
+                      std::to_string(host.port()) + ")\n  socket_read_line()\n  textmsg(\"never\")\nend\n"}});
+  ASSERT_TRUE(reply["ok"]) << reply.dump();
+  EXPECT_TRUE(
+      wait_for_log(controller, "secondary program 'ask' failed in line 3: Runtime is too much behind"));
+  EXPECT_FALSE(log_contains(controller, "never"));
+}
+
 TEST_F(ScriptSocketTest, SlowsDownAHostThatSendsFasterThanTheProgramReads)
 {
   run_script(

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "kinematics/inverse_kinematics.hpp"
+#include "motion/tcp_kinematics.hpp"
 #include "support/arm_fixture.hpp"
 
 namespace ur_simulator {
@@ -201,6 +202,24 @@ TEST(MoveLTest, ThroughAWristSingularityFaultsAndStops)
   EXPECT_EQ(fault->kind, MotionFault::Kind::singularity) << describe(*fault);
   fixture.until_rest(1.0);
   EXPECT_TRUE((fixture.max_velocity.array() <= fixture.model.velocity_max.array() * 1.000001).all());
+}
+
+TEST(MoveLTest, TheFaultNamesTheQuantityThatIsTooLarge)
+{
+  const RobotModel & model = find_robot_model("ur10e")->get();
+  const TcpKinematics kinematics(model, Vector6::Zero());
+  const Setpoint begin{default_position(model), Vector6::Zero()};
+  constexpr double duration = 0.002;
+  const auto fault_of_step = [&](double base_speed) {
+    Setpoint setpoint = begin;
+    Vector6 joints = begin.position;
+    joints[0] += base_speed * duration;
+    return kinematics.move_to(kinematics.tcp_pose(joints), duration, setpoint).value();
+  };
+  EXPECT_EQ(describe(fault_of_step(1.0)),
+            "joint base would have to accelerate at 500 rad/s^2 (limit 80 rad/s^2); move slower");
+  EXPECT_EQ(describe(fault_of_step(5.0)),
+            "joint base would have to turn at 5.00 rad/s (limit 2.09 rad/s); move slower");
 }
 
 TEST(MoveLTest, FaultsIfThePathIsOutOfReach)

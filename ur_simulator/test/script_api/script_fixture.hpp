@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -112,13 +113,14 @@ class ScriptFixture {
   std::unique_ptr<urscript::Machine> machine;
 };
 
+/// As a program contains it, in full precision.
 inline std::string list_text(const Vector6 & values)
 {
-  return urscript::Value::list(values).text();
+  return fmt::format("[{}]", fmt::join(values, ", "));
 }
 inline std::string pose_text(const Vector6 & values)
 {
-  return urscript::Value::pose(values).text();
+  return "p" + list_text(values);
 }
 
 }  // namespace ur_simulator

@@ -155,6 +155,8 @@ TEST(FunctionVersionTest, FunctionsExistFromTheirFirstVersion)
   const ScriptFixture fixture;
   EXPECT_NE(compile_error(fixture, "5.20", "optimovel(p[0,0,0,0,0,0])"), "");
   EXPECT_EQ(compile_error(fixture, "5.21", "optimovel(p[0,0,0,0,0,0])"), "");
+  EXPECT_NE(compile_error(fixture, "5.8.2", "get_inverse_kin_has_solution(p[0,0,0,0,0,0])"), "");
+  EXPECT_EQ(compile_error(fixture, "5.9.4", "get_inverse_kin_has_solution(p[0,0,0,0,0,0])"), "");
   EXPECT_NE(compile_error(fixture, "5.9", "ft_rtde_input_enable(False)"), "");
   EXPECT_EQ(compile_error(fixture, "5.9.1", "ft_rtde_input_enable(False)"), "");
   EXPECT_NE(compile_error(fixture, "3.7", "protective_stop()"), "");

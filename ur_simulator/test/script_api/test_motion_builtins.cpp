@@ -183,8 +183,8 @@ TEST(WaypointTest, IsTheTargetOfTheActiveMove)
   fixture.run("def test():\n global there = p[0,0,0,0,0,0]\n thread m():\n movel(" + pose_text(pose) +
               ")\n end\n h = run m()\n sync()\n there = get_target_waypoint()\n join h\nend");
   fixture.finish();
-  EXPECT_NE(pose_text(before), fixture.global("there"));
-  EXPECT_EQ(pose_text(pose), fixture.global("there"));
+  EXPECT_NE(urscript::Value::pose(before).text(), fixture.global("there"));
+  EXPECT_EQ(urscript::Value::pose(pose).text(), fixture.global("there"));
 }
 
 TEST(RejectedBuiltinTest, FailsWithItsReason)

@@ -85,8 +85,10 @@ TEST(InstallationBuiltinsTest, SetsPayloadTcpAndGravity)
   EXPECT_EQ(fixture.global("tcp"), "p[0, 0, 0.1, 0, 0, 0]");
   EXPECT_EQ(fixture.state.payload.inertia[2], 0.03);
   EXPECT_EQ(fixture.state.gravity.y(), 9.82);
-  EXPECT_EQ(fixture.global("pose"),
-            pose_text(tcp_pose(fixture.model, fixture.state.actual.position, fixture.state.tcp_offset)));
+  EXPECT_EQ(
+      fixture.global("pose"),
+      urscript::Value::pose(tcp_pose(fixture.model, fixture.state.actual.position, fixture.state.tcp_offset))
+          .text());
   EXPECT_NE(fixture.error_of("set_payload(100)").find("kg for a UR10e, is 100 kg"), std::string::npos);
   EXPECT_NE(fixture.error_of("set_payload(-1)").find("kg for a UR10e, is -1 kg"), std::string::npos);
 }
@@ -150,7 +152,7 @@ TEST(StateBuiltinsTest, ReportForcesAndHistory)
   fixture.history.record(fixture.state.actual.position);
   fixture.finish();
   EXPECT_EQ(fixture.machine->status(), MachineStatus::finished) << fixture.machine->error().message;
-  EXPECT_EQ(fixture.global("a"), list_text(earlier));
+  EXPECT_EQ(fixture.global("a"), urscript::Value::list(earlier).text());
   EXPECT_EQ(fixture.global("dt"), "0.002");
   EXPECT_NE(fixture.error_of("def t():\n x = get_actual_joint_positions_history(2000)\nend")
                 .find("the joint positions of 2000 steps ago are not stored"),

@@ -101,6 +101,20 @@ TEST_F(SocketBuiltinTest, NumbersHaveTheFormatOfTheManual)
   EXPECT_EQ(run(" x = socket_read_ascii_float(3)"), "[0, nan, nan, nan]");
 }
 
+TEST_F(SocketBuiltinTest, SendsNumbersAsMessagesContainThem)
+{
+  run(" socket_send_string(p[0.6768500000000001, 0, 1.0 / 3, 0, -2.7e-16, 0])\n socket_send_line(0.1 + 0.2)");
+  EXPECT_EQ(host.sent, "p[0.67685,0,0.333333,0,-2.7e-16,0]0.3\n");
+}
+
+// The functions of Robotiq's URCap read 17 bytes where fewer arrive.
+TEST_F(SocketBuiltinTest, AReadOfBytesReturnsThoseThatArrivedInTime)
+{
+  host.received = "[9]";
+  EXPECT_EQ(run(" x = socket_read_byte_list(6, timeout=0.01)"), "[3, 91, 57, 93, -1, -1, -1]");
+  EXPECT_EQ(host.received, "");
+}
+
 TEST_F(SocketBuiltinTest, PrefixAndSuffixMayBeEscapeSequences)
 {
   host.received = "junk\tmessage\rrest";

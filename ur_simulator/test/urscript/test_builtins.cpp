@@ -93,6 +93,55 @@ TEST(StringTest, AreSearchedCutAndConverted)
   EXPECT_EQ(evaluate("to_str([1, 2.5, True, \"a\"])"), "[1, 2.5, True, \"a\"]");
 }
 
+// The examples of the script manual, "to_str" and "to_num".
+TEST(StringTest, NumbersHaveSixDecimalsWithoutTrailingZeros)
+{
+  EXPECT_EQ(evaluate("to_str(10)"), "10");
+  EXPECT_EQ(evaluate("to_str(2.123456123456)"), "2.123456");
+  EXPECT_EQ(evaluate("to_str(p[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])"), "p[1, 2, 3, 4, 5, 6]");
+  EXPECT_EQ(evaluate("to_str([True, False, True])"), "[True, False, True]");
+  EXPECT_EQ(evaluate("to_str(0.0000001)"), "0");
+  EXPECT_EQ(evaluate("to_str(-0.0000001)"), "0");
+  EXPECT_EQ(evaluate("to_str(100.0)"), "100");
+  EXPECT_EQ(evaluate("to_str(1e20)"), "100000000000000000000");
+  EXPECT_EQ(evaluate("to_str([[1.0 / 3, 2.0], [3.5, 4]])"), "[[0.333333, 2], [3.5, 4]]");
+  EXPECT_EQ(evaluate("str_cat(\"third: \", 1.0 / 3)"), "third: 0.333333");
+}
+
+TEST(StringTest, TextsOfValuesHaveAtMost1023Characters)
+{
+  const std::string limit(1023, 'x');
+  EXPECT_EQ(evaluate("str_len(str_cat(\"" + limit.substr(1) + "\", \"x\"))"), "1023");
+  EXPECT_EQ(evaluate("str_cat(\"" + limit + "\", \"x\")"),
+            "error: str_cat: the string has 1024 characters, more than 1023");
+  EXPECT_EQ(evaluate("to_str(make_list(400, 7))"),
+            "error: to_str: the string has 1200 characters, more than 1023");
+}
+
+TEST(StringTest, TextsBecomeIntegersFloatsOrErrors)
+{
+  EXPECT_EQ(evaluate("to_num(\"10\") / 4"), "2.5");
+  EXPECT_EQ(evaluate("to_num(\" 077\")"), "77");
+  EXPECT_EQ(evaluate("to_num(\"-3.0e5\")"), "-300000");
+  EXPECT_EQ(evaluate("to_num(\"+5.\")"), "5");
+  EXPECT_EQ(evaluate("to_num(\"inf\")"), "inf");
+  EXPECT_EQ(evaluate("to_num(\"-inf\")"), "-inf");
+  EXPECT_EQ(evaluate("to_num(\"nan\")"), "nan");
+  EXPECT_EQ(evaluate("to_num(\"2147483647\")"), "2147483647");
+  EXPECT_EQ(evaluate("to_num(\"-2147483648\")"), "-2147483648");
+  EXPECT_EQ(evaluate("to_num(\"99999999999\")"),
+            "error: to_num: '99999999999' is out of the range of an int");
+  EXPECT_EQ(evaluate("to_num(\"1e999\")"), "error: to_num: '1e999' is out of the range of a float");
+  EXPECT_EQ(evaluate("to_num(\"123abc\")"), "error: to_num: '123abc' is not a number");
+  EXPECT_EQ(evaluate("to_num(\"\")"), "error: to_num: '' is not a number");
+}
+
+TEST(StringTest, ASubstringHasNoNegativeLength)
+{
+  EXPECT_EQ(evaluate("str_sub(\"Hello\", 2, 0)"), "");
+  EXPECT_EQ(evaluate("str_sub(\"Hello\", 2, -1)"), "error: str_sub: len must not be negative, is -1");
+}
+
 TEST(PoseBuiltinsTest, AreAddedSubtractedAndInverted)
 {
   expect_near(six("pose_add(p[1,2,3,0,0,1], p[1,1,1,0,0,1])"), vector(2, 3, 4, 0, 0, 2));
@@ -136,7 +185,19 @@ TEST(TextMessageTest, JoinBothArguments)
   ScriptRunner runner(
       "def test():\n textmsg(\"value: \", 3)\n textmsg(p[0.5,0,0,0,0,0])\n textmsg(\"\")\nend");
   EXPECT_EQ(runner.finish(), MachineStatus::finished);
-  EXPECT_EQ(runner.host.messages, (std::vector<std::string>{"value: 3", "p[0.5, 0, 0, 0, 0, 0]", ""}));
+  EXPECT_EQ(runner.host.messages, (std::vector<std::string>{"value: 3", "p[0.5,0,0,0,0,0]", ""}));
+}
+
+// A recorded message: p[0.605825,-0.720087,0.233797,-0.0111368,-0.0111357,1.57073]
+TEST(TextMessageTest, HasSixSignificantDigits)
+{
+  ScriptRunner runner(
+      "def test():\n textmsg(p[0.60582512,-0.7200871,0.2337969,-0.01113678,-0.01113571,1.5707341])\n"
+      " textmsg(\"x \", 1.0 / 3)\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished);
+  EXPECT_EQ(runner.host.messages,
+            (std::vector<std::string>{"p[0.605825,-0.720087,0.233797,-0.0111368,-0.0111357,1.57073]",
+                                      "x 0.333333"}));
 }
 
 TEST(BuiltinCallTest, ErrorContainsTheRequiredArgumentWithoutValue)

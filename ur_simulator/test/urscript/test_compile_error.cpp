@@ -29,6 +29,15 @@ TEST(CompileErrorTest, ChecksArguments)
   expect_error("sleep()", 1, "needs the argument 't'");
 }
 
+TEST(CompileErrorTest, ContainsTheLineOfASyntaxError)
+{
+  EXPECT_EQ(compile_error("def test():\r\n  if True\r\n    x = 1\r\n  end\r\nend\r\n").source_line,
+            "    x = 1");
+  EXPECT_EQ(compile_error("def test():\n  x = 1\n").source_line, "");
+  EXPECT_EQ(compile_error("x = (").source_line, "x = (");
+  EXPECT_EQ(compile_error("x = y").source_line, std::nullopt);
+}
+
 TEST(CompileErrorTest, ContainsThePositionOfASyntaxError)
 {
   const CompileError error = compile_error("def test():\n  if True\n    x = 1\n  end\nend\n");

@@ -43,7 +43,7 @@ class RobotiqGripperTest : public ::testing::Test {
 TEST_F(RobotiqGripperTest, ActivationClosesAndOpensTheFingers)
 {
   gripper.set("ACT", 1);
-  EXPECT_GE(run_until([&] { return value("POS") == 255; }), 0.0);
+  EXPECT_GE(run_until([&] { return value("POS") == RobotiqGripper::closed_position; }), 0.0);
   EXPECT_EQ(value("STA"), 1);
   EXPECT_GE(run_until([&] { return value("STA") == 3; }), 0.0);
   EXPECT_EQ(value("POS"), 0);
@@ -55,6 +55,22 @@ TEST_F(RobotiqGripperTest, MovesAtTheSpeedOfItsRegister)
   EXPECT_NEAR(move(255, 255), RobotiqGripper::stroke / RobotiqGripper::max_speed, 0.01);
   EXPECT_EQ(value("OBJ"), 3);
   EXPECT_NEAR(move(0, 0), RobotiqGripper::stroke / RobotiqGripper::min_speed, 0.01);
+}
+
+// A recorded gripper closes at 227 and reports that it is at the requested position.
+TEST_F(RobotiqGripperTest, ClosedFingersAreAtAnyLargerPosition)
+{
+  activate();
+  move(255);
+  EXPECT_EQ(value("POS"), 227);
+  EXPECT_EQ(value("OBJ"), 3);
+  EXPECT_EQ(value("PRE"), 255);
+  EXPECT_EQ(gripper.width(), 0.0);
+  gripper.set_object(5.0);
+  move(0);
+  move(255);
+  EXPECT_EQ(value("OBJ"), 2);
+  EXPECT_NEAR(gripper.width(), 5.0, 0.3);
 }
 
 TEST_F(RobotiqGripperTest, StopsAtAnObjectAndContinuesWhenItIsTaken)

@@ -21,6 +21,7 @@ class ConnectOperation final : public urscript::Operation {
     const bool ended = socket_->failed() || waited_ >= connect_timeout;
     return ended ? std::optional(Value(false)) : std::nullopt;
   }
+  bool is_network_call() const override { return true; }
 
  private:
   std::shared_ptr<ScriptSocket> socket_;
@@ -63,6 +64,11 @@ Outcome send_bytes(ProgramSockets & sockets, CallContext & context, const std::s
   return Value(sent);
 }
 
+std::string text_bytes(ArgumentReader & reader)
+{
+  return reader.value(0).text(urscript::TextFormat::message);
+}
+
 std::string integer_bytes(ArgumentReader & reader)
 {
   const auto value = static_cast<std::uint32_t>(reader.integer(0, "value"));
@@ -85,8 +91,8 @@ void add_socket_send_builtins(Library & library, const ProgramSocketsPtr & socke
                    return reader ? send_bytes(*sockets, context, text, socket) : Outcome(reader.failure());
                  }});
   };
-  add("socket_send_string", "str", [](ArgumentReader & reader) { return reader.value(0).text(); });
-  add("socket_send_line", "str", [](ArgumentReader & reader) { return reader.value(0).text() + "\n"; });
+  add("socket_send_string", "str", text_bytes);
+  add("socket_send_line", "str", [](ArgumentReader & reader) { return text_bytes(reader) + "\n"; });
   add("socket_send_byte", "value",
       [](ArgumentReader & reader) { return std::string(1, static_cast<char>(reader.integer(0, "value"))); });
   add("socket_send_int", "value", integer_bytes);

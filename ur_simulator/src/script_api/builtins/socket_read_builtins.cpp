@@ -1,3 +1,4 @@
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -12,22 +13,28 @@ constexpr double default_timeout = 2.0;   // s, of the read functions (script ma
 constexpr std::int32_t max_numbers = 30;  // limit of one read (script manual, "socket_read_ascii_float")
 constexpr std::uint32_t read_cost = 100;  // instructions
 
-/// Waits for a value. Result: `default_value` if the time is up or the socket is closed.
+/// The value of a read that is not complete when its time is up or the socket is closed.
+using Fallback = std::function<Value(std::string & received)>;
+
+Fallback always(Value value)
+{
+  return [value = std::move(value)](std::string &) { return value; };
+}
+
+/// Waits for a value.
 class ReadOperation final : public urscript::Operation {
  public:
-  ReadOperation(const std::shared_ptr<ScriptSocket> & socket, Extractor extract, Value default_value,
+  ReadOperation(const std::shared_ptr<ScriptSocket> & socket, Extractor extract, Fallback otherwise,
                 double timeout)
-      : socket_(socket),
-        extract_(std::move(extract)),
-        default_value_(std::move(default_value)),
-        timeout_(timeout)
+      : socket_(socket), extract_(std::move(extract)), otherwise_(std::move(otherwise)), timeout_(timeout)
   {
   }
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override
   {
     const auto socket = socket_.lock();
     if (socket == nullptr) {
-      return default_value_;
+      std::string nothing;
+      return otherwise_(nothing);
     }
     if (auto value = extract_(socket->received())) {
       return value;
@@ -35,30 +42,33 @@ class ReadOperation final : public urscript::Operation {
     waited_ += context.cycle_time;
     const bool no_timeout = timeout_ <= 0.0;
     const bool ended = socket->failed() || (!no_timeout && waited_ >= timeout_);
-    return ended ? std::optional(default_value_) : std::nullopt;
+    return ended ? std::optional(otherwise_(socket->received())) : std::nullopt;
   }
+  bool is_network_call() const override { return true; }
 
  private:
   std::weak_ptr<ScriptSocket> socket_;
   Extractor extract_;
-  Value default_value_;
+  Fallback otherwise_;
   double timeout_;
   double waited_ = 0.0;
 };
 
 // Data that has arrived is returned in the same cycle.
 Outcome read_socket(ProgramSockets & sockets, CallContext & context, const std::string & name,
-                    Extractor extract, Value default_value, double timeout)
+                    Extractor extract, Fallback otherwise, double timeout)
 {
   const auto socket = sockets.find(context.program, name);
   if (socket == nullptr) {
-    return NextCycle{std::move(default_value)};
+    std::string nothing;
+    Value value = otherwise(nothing);
+    return context.secondary ? Outcome(std::move(value)) : Outcome(NextCycle{std::move(value)});
   }
   if (auto value = extract(socket->received())) {
     context.received_data = true;
     return std::move(*value);
   }
-  return std::make_unique<ReadOperation>(socket, std::move(extract), std::move(default_value), timeout);
+  return std::make_unique<ReadOperation>(socket, std::move(extract), std::move(otherwise), timeout);
 }
 
 Outcome read_string(ProgramSockets & sockets, CallContext & context, Arguments arguments)
@@ -72,7 +82,7 @@ Outcome read_string(ProgramSockets & sockets, CallContext & context, Arguments a
     suffix = interpret_escapes(suffix);
   }
   const double timeout = reader.number(4, "timeout");
-  return reader ? read_socket(sockets, context, name, string_extractor(prefix, suffix), Value(""), timeout)
+  return reader ? read_socket(sockets, context, name, string_extractor(prefix, suffix), always(""), timeout)
                 : reader.failure();
 }
 
@@ -81,7 +91,7 @@ Outcome read_socket_line(ProgramSockets & sockets, CallContext & context, Argume
   ArgumentReader reader(arguments);
   const std::string name = reader.string(0, "socket_name");
   const double timeout = reader.number(1, "timeout");
-  return reader ? read_socket(sockets, context, name, line_extractor(), Value(""), timeout)
+  return reader ? read_socket(sockets, context, name, line_extractor(), always(""), timeout)
                 : reader.failure();
 }
 
@@ -96,14 +106,14 @@ Outcome get_variable(ProgramSockets & sockets, CallContext & context, Arguments 
   if (const auto socket = sockets.find(context.program, name)) {
     socket->send("GET " + variable + "\n");
   }
-  return read_socket(sockets, context, name, variable_extractor(variable), Value(0), default_timeout);
+  return read_socket(sockets, context, name, variable_extractor(variable), always(0), default_timeout);
 }
 
 /// A function that reads a number of numbers.
 struct NumberReader {
   const char * builtin;
   Extractor (*make_extractor)(std::size_t number);
-  Value value_if_failed;
+  Fallback (*make_fallback)(std::size_t number);
 };
 
 Outcome read_numbers(ProgramSockets & sockets, const NumberReader & numbers, CallContext & context,
@@ -119,8 +129,29 @@ Outcome read_numbers(ProgramSockets & sockets, const NumberReader & numbers, Cal
     return reader.failure();
   }
   const auto count = static_cast<std::size_t>(number);
-  return read_socket(sockets, context, name, numbers.make_extractor(count),
-                     failed_numbers(count, numbers.value_if_failed), timeout);
+  return read_socket(sockets, context, name, numbers.make_extractor(count), numbers.make_fallback(count),
+                     timeout);
+}
+
+Extractor byte_extractor(std::size_t number)
+{
+  return integer_extractor(number, 1);
+}
+Extractor word_extractor(std::size_t number)
+{
+  return integer_extractor(number, 4);
+}
+Fallback fewer_bytes(std::size_t number)
+{
+  return [number](std::string & received) { return available_bytes(received, number); };
+}
+Fallback no_integers(std::size_t number)
+{
+  return always(failed_numbers(number, -1));
+}
+Fallback no_floats(std::size_t number)
+{
+  return always(failed_numbers(number, std::numeric_limits<double>::quiet_NaN()));
 }
 
 }  // namespace
@@ -142,12 +173,9 @@ void add_socket_read_builtins(Library & library, const ProgramSocketsPtr & socke
       {name, {"prefix", Value("")}, {"suffix", Value("")}, {"interpret_escape", Value(false)}, timeout}, 0,
       read_string);
   add("socket_get_var", {"name", name}, 1, get_variable);
-  const NumberReader readers[] = {
-      {"socket_read_byte_list", [](std::size_t number) { return integer_extractor(number, 1); }, Value(-1)},
-      {"socket_read_binary_integer", [](std::size_t number) { return integer_extractor(number, 4); },
-       Value(-1)},
-      {"socket_read_ascii_float", float_extractor, Value(std::numeric_limits<double>::quiet_NaN())},
-  };
+  const NumberReader readers[] = {{"socket_read_byte_list", byte_extractor, fewer_bytes},
+                                  {"socket_read_binary_integer", word_extractor, no_integers},
+                                  {"socket_read_ascii_float", float_extractor, no_floats}};
   for (const NumberReader & numbers : readers) {
     add(numbers.builtin, {"number", name, timeout}, 1,
         [numbers](ProgramSockets & open_sockets, CallContext & context, Arguments arguments) {

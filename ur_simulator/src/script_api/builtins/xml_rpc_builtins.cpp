@@ -30,6 +30,7 @@ class RemoteCallOperation final : public urscript::Operation {
       return std::optional(std::move(value));
     });
   }
+  bool is_network_call() const override { return true; }
 
  private:
   std::shared_ptr<HttpRequest> request_;

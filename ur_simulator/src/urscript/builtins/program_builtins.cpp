@@ -92,9 +92,9 @@ Outcome request_value(CallContext &, Arguments arguments)
 
 Outcome textmsg(CallContext & context, Arguments arguments)
 {
-  std::string text = arguments[0].text();
+  std::string text = arguments[0].text(TextFormat::message);
   if (!arguments[1].is(Type::none)) {
-    text += arguments[1].text();
+    text += arguments[1].text(TextFormat::message);
   }
   context.host.text_message(text);
   return Value();

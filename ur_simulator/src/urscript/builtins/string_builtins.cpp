@@ -1,13 +1,26 @@
+#include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
+#include <utility>
 
 #include "urscript/argument_reader.hpp"
 #include "urscript/builtins/builtins.hpp"
-#include "urscript/interpreter/containers.hpp"
 
 namespace ur_simulator::urscript {
 
 namespace {
+
+constexpr std::size_t formatted_limit = 1023;  // characters, of to_str() and str_cat() (script manual)
+
+Outcome formatted(std::string text)
+{
+  if (text.size() > formatted_limit) {
+    return Failure{fmt::format("the string has {} characters, more than {}", text.size(), formatted_limit)};
+  }
+  return Value(std::move(text));
+}
 
 Outcome str_at(CallContext &, Arguments arguments)
 {
@@ -26,10 +39,7 @@ Outcome str_cat(CallContext &, Arguments arguments)
   for (const Value & part : arguments) {
     result += part.text();
   }
-  if (result.size() > string_limit) {
-    return Failure{fmt::format("the string is longer than {} bytes", string_limit)};
-  }
-  return Value(std::move(result));
+  return formatted(std::move(result));
 }
 
 // The position of `target`, or -1. The time of memmem() is linear; that of std::string::find() is quadratic
@@ -61,28 +71,36 @@ Outcome str_sub(CallContext &, Arguments arguments)
   ArgumentReader reader(arguments);
   const std::string source = reader.string(0, "src");
   const std::int32_t index = reader.integer(1, "index");
-  const std::int32_t length = reader.given(2) ? reader.integer(2, "len") : -1;
+  const bool to_end = !reader.given(2);
+  const std::int32_t length = to_end ? 0 : reader.integer(2, "len");
+  reader.require(length >= 0, fmt::format("len must not be negative, is {}", length));
   reader.require(index >= 0 && static_cast<std::size_t>(index) <= source.size(),
                  fmt::format("index must be in [0, {}], is {}", source.size(), index));
   if (!reader) {
     return reader.failure();
   }
   return Value(source.substr(static_cast<std::size_t>(index),
-                             length < 0 ? std::string::npos : static_cast<std::size_t>(length)));
+                             to_end ? std::string::npos : static_cast<std::size_t>(length)));
 }
 
+// An integer, unless the text has a decimal point or an exponent, or is "inf" or "nan".
 Outcome to_num(CallContext &, Arguments arguments)
 {
   ArgumentReader reader(arguments);
   const std::string text = reader.string(0, "str");
   char * end = nullptr;
+  errno = 0;
   const double number = std::strtod(text.c_str(), &end);
-  reader.require(!text.empty() && *end == '\0' && std::isfinite(number),
-                 fmt::format("'{}' is not a number", text));
+  const bool overflow = errno == ERANGE && std::isinf(number);
+  const bool whole = text.find_first_of(".eEnN") == std::string::npos;
+  reader.require(!text.empty() && *end == '\0', fmt::format("'{}' is not a number", text));
+  reader.require(!overflow, fmt::format("'{}' is out of the range of a float", text));
+  reader.require(!whole || (number >= std::numeric_limits<std::int32_t>::min() &&
+                            number <= std::numeric_limits<std::int32_t>::max()),
+                 fmt::format("'{}' is out of the range of an int", text));
   if (!reader) {
     return reader.failure();
   }
-  const bool whole = text.find_first_of(".eE") == std::string::npos && std::abs(number) <= 2147483647.0;
   return whole ? Value(static_cast<std::int32_t>(number)) : Value(number);
 }
 
@@ -112,7 +130,7 @@ void add_string_builtins(Library & library)
   library.add({"str_empty", {"str"}, 1, str_empty});
   library.add({"to_num", {"str"}, 1, to_num});
   library.add({"to_str", {"val"}, 1, [](CallContext &, Arguments arguments) -> Outcome {
-                 return Value(arguments[0].text());
+                 return formatted(arguments[0].text());
                }});
 }
 

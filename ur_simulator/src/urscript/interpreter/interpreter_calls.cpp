@@ -11,6 +11,30 @@ namespace {
 
 constexpr std::uint32_t method_cost = 10;
 constexpr std::size_t stack_limit = 100000;
+constexpr double quick_call_limit = 0.5;  // s, of a network call in a secondary program
+
+/// A network call of a secondary program. A robot waits within one control cycle.
+class QuickCall final : public Operation {
+ public:
+  explicit QuickCall(std::unique_ptr<Operation> call) : call_(std::move(call)) {}
+
+  tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override
+  {
+    auto result = call_->poll(context);
+    waited_ += context.cycle_time;
+    if (!result || *result || waited_ < quick_call_limit) {
+      return result;
+    }
+    call_->cancel();
+    return tl::unexpected(fmt::format(
+        "Runtime is too much behind: the other machine did not answer within {} s", quick_call_limit));
+  }
+  void cancel() override { call_->cancel(); }
+
+ private:
+  std::unique_ptr<Operation> call_;
+  double waited_ = 0.0;
+};
 
 }  // namespace
 
@@ -96,10 +120,14 @@ Interpreter::Next Interpreter::handle_outcome(const std::string & name, Outcome 
   const bool waits = std::holds_alternative<NextCycle>(outcome) ||
                      std::holds_alternative<std::unique_ptr<Operation>>(outcome);
   if (waits && context_->secondary) {
-    if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
-      (*operation)->cancel();
+    auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome);
+    if (operation == nullptr || !(*operation)->is_network_call()) {
+      if (operation != nullptr) {
+        (*operation)->cancel();
+      }
+      return fail_at_current_line("a secondary program cannot call functions that take physical time");
     }
-    return fail_at_current_line("a secondary program cannot call functions that take physical time");
+    *operation = std::make_unique<QuickCall>(std::move(*operation));
   }
   drop(arguments);
   if (auto * value = std::get_if<Value>(&outcome)) {

@@ -1,5 +1,8 @@
 #include "urscript/parser/parser.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "urscript/parser/expression_parser.hpp"
 
 namespace ur_simulator::urscript {
@@ -219,6 +222,15 @@ class StatementParser : private ExpressionParser {
   }
 };
 
+/// 1-based; "" beyond the end of the text.
+std::string line_of(std::string_view text, std::int32_t number)
+{
+  for (; number > 1 && !text.empty(); --number) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
+  return std::string(text.substr(0, text.find_first_of("\r\n")));
+}
+
 using Parse = std::unique_ptr<Definition> (StatementParser::*)();
 
 tl::expected<std::unique_ptr<Definition>, CompileError> parse_with(Parse function, std::string_view text,
@@ -231,8 +243,9 @@ tl::expected<std::unique_ptr<Definition>, CompileError> parse_with(Parse functio
   try {
     StatementParser parser(text, limits);
     return (parser.*function)();
-  } catch (const CompileError & error) {
-    return tl::unexpected(error);
+  } catch (CompileError & error) {
+    error.source_line = line_of(text, error.line);
+    return tl::unexpected(std::move(error));
   }
 }
 
