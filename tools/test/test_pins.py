@@ -42,7 +42,7 @@ def registry(tmp_path, monkeypatch):
 @pytest.fixture
 def file(tmp_path, monkeypatch):
     monkeypatch.setattr(pins, "FOLDER", tmp_path)
-    return tmp_path / "tools.txt"
+    return tmp_path / "kilted.txt"
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -69,7 +69,7 @@ def test_a_line_that_pins_nothing_is_named(file, line):
     file.write_text(f"# comment\nsix==1.17.0\n{line}\n")
     with pytest.raises(console.Failure) as failure:
         pins.read(file)
-    assert f"tools.txt:3: `{line}`" in str(failure.value)
+    assert f"kilted.txt:3: `{line}`" in str(failure.value)
 
 
 def test_a_package_with_its_hash_is_installed(registry, file, tmp_path):
@@ -85,7 +85,7 @@ def test_a_package_with_another_hash_is_not_installed_and_named(registry, file, 
     with pytest.raises(pins.Mismatch) as failure:
         pins.install(sys.executable, file)
     text = str(failure.value)
-    assert text.startswith("first==1.0 was not installed") and received in text and "./ur lock tools" in text
+    assert text.startswith("first==1.0 was not installed") and received in text and "./ur lock kilted" in text
     assert ("one of the 2" in text) == (len(expected) == 2)
     assert not (tmp_path / "installed" / "first.py").exists()
 
@@ -106,23 +106,23 @@ def test_lock_writes_the_hashes_and_keeps_comments_and_markers(registry, file, t
     old, new = make_wheel(registry, "first", "1.0"), make_wheel(registry, "first", "2.0", ">=3.11")
     file.write_text(f'# A comment.\nFirst==1.0; python_version < "3.11" \\\n    --hash=sha256:{WRONG}\n'
                     'First==2.0; python_version >= "3.11"\n')
-    assert pin_hashes.lock("tools", sys.executable, tmp_path) == 2
+    assert pin_hashes.lock("kilted", sys.executable, tmp_path) == 2
     assert file.read_text() == (f'# A comment.\nFirst==1.0; python_version < "3.11" \\\n    --hash=sha256:{old}\n'
                                 f'First==2.0; python_version >= "3.11" \\\n    --hash=sha256:{new}\n')
-    assert pin_hashes.lock("tools", sys.executable, tmp_path) == 0
+    assert pin_hashes.lock("kilted", sys.executable, tmp_path) == 0
 
 
 def test_lock_rejects_a_version_that_a_supported_python_cannot_install(registry, file, tmp_path):
     make_wheel(registry, "first", "2.0", ">=3.11.5")
     file.write_text("first==2.0\n")
     with pytest.raises(console.Failure, match=r'first 2\.0 needs Python >=3\.11\.5.*python_version < "3\.11"'):
-        pin_hashes.lock("tools", sys.executable, tmp_path)
+        pin_hashes.lock("kilted", sys.executable, tmp_path)
 
 
 def test_lock_names_a_package_that_does_not_exist(registry, file, tmp_path):
     file.write_text("missing==1.0\n")
-    with pytest.raises(console.Failure, match=r"pip found no files for tools with Python 3\.10 on x86_64:(.|\n)*missing==1\.0"):
-        pin_hashes.lock("tools", sys.executable, tmp_path)
+    with pytest.raises(console.Failure, match=r"pip found no files for kilted with Python 3\.10 on x86_64:(.|\n)*missing==1\.0"):
+        pin_hashes.lock("kilted", sys.executable, tmp_path)
     assert file.read_text() == "missing==1.0\n"
 
 

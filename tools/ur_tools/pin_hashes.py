@@ -67,10 +67,11 @@ def _report(python: pathlib.Path, folder: pathlib.Path, wanted: List[pins.Pin], 
 
 
 def _check_python(item: Dict[str, Any], machine: Machine) -> None:
-    needed = re.search(r">= *3\.(\d+)(?:\.(\d+))?", item["metadata"].get("requires_python", ""))
+    metadata = item["metadata"]
+    needed = re.search(r">= *3\.(\d+)(?:\.(\d+))?", metadata.get("requires_python", ""))
     if needed and (int(needed.group(1)), int(needed.group(2) or 0)) > (machine.python[1], 0):
-        raise console.Failure(f"{item['metadata']['name']} {item['metadata']['version']} needs Python {item['metadata']['requires_python']}: "
-                              f"pin an older version for Python {machine.python[0]}.{machine.python[1]}, with a marker such as "
+        raise console.Failure(f"{metadata['name']} {metadata['version']} needs Python {metadata['requires_python']}: pin an older version "
+                              f"for Python {machine.python[0]}.{machine.python[1]}, with a marker such as "
                               f"`; python_version < \"3.{needed.group(1)}\"`.")
 
 

@@ -52,8 +52,8 @@ def normalized(name: str) -> str:
 def _pin(file: pathlib.Path, number: int, line: str) -> Pin:
     match = _PIN.match(line)
     if match is None or (match.group(3) and not _MARKER.match(match.group(3))):
-        raise console.Failure(f"{file.name}:{number}: `{line}` is not a pinned package. Write it as `numpy==2.2.6`, or for some versions of "
-                              "Python as `numpy==2.2.6; python_version < \"3.11\"`, with <, == or >=.")
+        raise console.Failure(f"{file.name}:{number}: `{line}` is not a pinned package. Write it as `numpy==2.2.6`, or for some versions "
+                              "of Python as `numpy==2.2.6; python_version < \"3.11\"`, with <, == or >=.")
     return Pin(match.group(1), match.group(2), match.group(3) or "")
 
 
