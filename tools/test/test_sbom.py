@@ -7,7 +7,7 @@ import sys
 import xml.etree.ElementTree as xml
 
 import pytest
-from ur_tools import packages, pins, sbom
+from ur_tools import console, packages, pins, sbom
 from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
@@ -79,9 +79,16 @@ def test_references_exist_once():
 
 
 def test_the_bill_names_the_patches_of_ur_rtde():
-    version = next(pin.version for pin in pinned() if pin.name == "ur-rtde")
-    patches = COMPONENTS[f"pkg:pypi/ur-rtde@{version}"]["pedigree"]["patches"]
+    uses, = (entry["dependsOn"] for entry in BILL["dependencies"] if entry["ref"] == "ur_rtde_vendor")
+    ur_rtde, = (name for name in uses if name.startswith("pkg:pypi/ur-rtde@"))
+    patches = COMPONENTS[ur_rtde]["pedigree"]["patches"]
     assert len(patches) == len(list((ROOT / "ur_rtde_vendor" / "patches").glob("*.patch"))) > 0
+
+
+def test_a_dependency_without_a_licence_is_named(monkeypatch):
+    monkeypatch.setattr(sbom, "licences", lambda: {name: licence for name, licence in KNOWN.items() if name != "numpy"})
+    with pytest.raises(console.Failure, match="no licence of numpy: add it"):
+        sbom.bill_of_materials()
 
 
 def test_it_is_written_to_the_output_or_a_file(run_without_build, tmp_path):

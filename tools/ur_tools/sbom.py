@@ -12,6 +12,7 @@ from .layout import ROOT
 
 PAGE = ROOT / "docs" / "internals" / "dependencies.md"
 UNKNOWN = "NOASSERTION"
+UR_RTDE = pins.FOLDER / "ur_rtde.txt"  # the sources that ur_rtde_vendor builds
 _ROW = re.compile(r"^\| (.+) \| (`.+`) \|$", re.M)
 
 Json = Dict[str, Any]
@@ -29,6 +30,13 @@ def name_on_page(name: str) -> str:
     if name.startswith("python3-"):
         name = name[len("python3-"):]
     return {"yaml": "pyyaml"}.get(name, name)
+
+
+def _licence(known: Dict[str, str], name: str) -> str:
+    found = known.get(name_on_page(name))
+    if found is None:
+        raise console.Failure(f"{PAGE.relative_to(ROOT)} has no licence of {name_on_page(name)}: add it to a table there.")
+    return found
 
 
 def _component(name: str, licence: str, **more: Any) -> Json:
@@ -67,8 +75,12 @@ def _declared(known: Dict[str, str]) -> List[Json]:
     for manifest in manifests():
         for name, tags in dependencies(manifest).items():
             kinds.setdefault(name, set()).update(tags)
-    return [_component(name, known[name_on_page(name)], properties=[_property("declared as", tag) for tag in sorted(tags)])
+    return [_component(name, _licence(known, name), properties=[_property("declared as", tag) for tag in sorted(tags)])
             for name, tags in sorted(kinds.items()) if name not in ours]
+
+
+def _purl(pin: pins.Pin) -> str:
+    return f"pkg:pypi/{pins.normalized(pin.name)}@{pin.version}"
 
 
 def _pinned(known: Dict[str, str]) -> List[Json]:
@@ -76,14 +88,14 @@ def _pinned(known: Dict[str, str]) -> List[Json]:
     for file in sorted(pins.FOLDER.glob("*.txt")):
         for pin in pins.read(file):
             name = pins.normalized(pin.name)
-            purl = f"pkg:pypi/{name}@{pin.version}"
-            component = found.setdefault(purl, _component(name, known[name_on_page(name)], version=pin.version, purl=purl, hashes=[],
+            purl = _purl(pin)
+            component = found.setdefault(purl, _component(name, _licence(known, name), version=pin.version, purl=purl, hashes=[],
                                                           properties=[]))
             component["bom-ref"] = purl
             component["hashes"] += [{"alg": "SHA-256", "content": digest} for digest in pin.hashes
                                     if digest not in {entry["content"] for entry in component["hashes"]}]
             component["properties"].append(_property("pinned in", f"wheels/{file.name}"))
-            if name == "ur-rtde":
+            if file == UR_RTDE:
                 component["pedigree"] = {"patches": _patches()}
     return [found[purl] for purl in sorted(found)]
 
@@ -91,6 +103,12 @@ def _pinned(known: Dict[str, str]) -> List[Json]:
 def _patches() -> List[Json]:
     return [{"type": "unofficial", "diff": {"url": str(patch.relative_to(ROOT))}}
             for patch in sorted((ROOT / "ur_rtde_vendor" / "patches").glob("*.patch"))]
+
+
+def _uses(manifest: xml.Element) -> Json:
+    name = manifest.findtext("name")
+    built = [_purl(pin) for pin in pins.read(UR_RTDE)] if name == "ur_rtde_vendor" else []
+    return {"ref": name, "dependsOn": sorted([*dependencies(manifest), *built])}
 
 
 def bill_of_materials() -> Json:
@@ -101,7 +119,7 @@ def bill_of_materials() -> Json:
         "metadata": {"component": {"type": "application", "bom-ref": "project", "name": "ur_ros_rtde", "version": version,
                                    "licenses": [{"expression": "Apache-2.0"}]}},
         "components": [*_our_packages(), *_declared(known), *_pinned(known)],
-        "dependencies": [{"ref": manifest.findtext("name"), "dependsOn": sorted(dependencies(manifest))} for manifest in manifests()]}
+        "dependencies": [_uses(manifest) for manifest in manifests()]}
 
 
 def run(options: argparse.Namespace) -> int:
