@@ -14,7 +14,7 @@ from . import console, pins, venv
 
 FILES = tuple(sorted(path.stem for path in pins.FOLDER.glob("*.txt")))
 SOURCES = ("ur_rtde",)  # files whose packages are source archives, the same for all machines
-OF_WHEELS = ("jazzy", "kilted", "libraries")  # used with the ROS wheels, which exist for one processor
+OF_WHEELS = ("jazzy", "kilted", "libraries", "oracle")  # exist for one processor
 OF_INSTALLED_ROS = ("browser", "tools", "viewer")  # used with every Python that a supported ROS has; the others with those of the wheels
 NEWEST_PYTHON = (3, 14)
 # Of the oldest supported system, Ubuntu 22.04. Newer systems install the same files.
