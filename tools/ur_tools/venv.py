@@ -107,7 +107,9 @@ def _pip_install(layout: Layout, requirements: Sequence[pathlib.Path]) -> None:
             logs = installation.wait()
         if not logs:
             return
-        _fail_on_mismatch(requirements, logs)
+        for file in requirements:
+            if _log(layout, file) in logs:  # the same file would come at the next attempt
+                pins.fail_on_mismatch(file, _log(layout, file).read_text(errors="replace"))
         if attempt < 3:
             console.line(f"    the installation failed ({', '.join(map(str, logs))}); trying again")
             time.sleep(RETRY_DELAY * attempt)
@@ -117,16 +119,8 @@ def _pip_install(layout: Layout, requirements: Sequence[pathlib.Path]) -> None:
                           "again: downloaded packages are kept.")
 
 
-def _fail_on_mismatch(requirements: Sequence[pathlib.Path], logs: Sequence[pathlib.Path]) -> None:
-    """A file with another hash is an error at once: it would be the same file at the next attempt."""
-    for file in requirements:
-        for log in logs:
-            if log.name == _log_name(file):
-                pins.fail_on_mismatch(file, log.read_text(errors="replace"))
-
-
-def _log_name(requirements: pathlib.Path) -> str:
-    return f"pip_{requirements.stem}.log"
+def _log(layout: Layout, requirements: pathlib.Path) -> pathlib.Path:
+    return layout.base / f"pip_{requirements.stem}.log"
 
 
 class Installation:
@@ -136,7 +130,7 @@ class Installation:
         self._total = sum(_count(file) for file in requirements)
         self._running: "Dict[pathlib.Path, subprocess.Popen[bytes]]" = {}  # by log
         for file in requirements:
-            log = layout.base / _log_name(file)
+            log = _log(layout, file)
             with log.open("w") as output:
                 self._running[log] = subprocess.Popen(pins.install_command(layout.python, file), env=env, stdout=output,
                                                       stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
