@@ -8,9 +8,10 @@ from ur_tools.layout import Layout
 
 # Fails for each file that is listed in "failing". Exits when all requirement files are being installed.
 PIP = """#!/bin/sh
-file=$(basename "$9" .txt)
+for last; do :; done
+file=$(basename "$last" .txt)
 folder=$(dirname "$0")
-echo "Collecting first==1.0 (from -r $9)"
+echo "Collecting first==1.0 (from -r $last)"
 touch "$folder/started-$file"
 for attempt in $(seq 1000); do [ $(ls "$folder" | grep -c ^started-) = 3 ] && break; sleep 0.01; done
 [ $(ls "$folder" | grep -c ^started-) = 3 ] || exit 1

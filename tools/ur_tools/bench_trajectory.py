@@ -9,12 +9,11 @@ import sys
 from typing import List, Mapping
 
 from . import build as building
-from . import console
+from . import console, pins
 from .environment import run_environment
 from .layout import ROOT, Layout
 
-# Only for the comparison.
-ORACLES = ("numpy==2.2.6", "scipy==1.15.3", "copp-py==0.2.3", "toppra==0.6.10")
+REQUIREMENTS = ROOT / "wheels" / "oracle.txt"
 # Name, jerk limits (0 or 1), s between the solver's grid points. On a coarse grid a solver exceeds the limits in between.
 COMPARISONS = (("with jerk limits, against copp-py", "1", "0.006"), ("without, against toppra", "0", "0.003"))
 
@@ -33,15 +32,15 @@ def _oracle_python(layout: Layout) -> pathlib.Path:
     folder = layout.base / "oracle"
     python = folder / "bin" / "python"
     stamp = folder / "ur_stamp.txt"
-    if stamp.is_file() and stamp.read_text() == " ".join(ORACLES):
+    if stamp.is_file() and stamp.read_text() == REQUIREMENTS.read_text():
         return python
     console.step("Installing the solvers")
-    for command in ([str(layout.python), "-m", "venv", "--clear", str(folder)],
-                    [str(python), "-m", "pip", "install", "--disable-pip-version-check", "-q", *ORACLES]):
-        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
-        if result.returncode != 0:
-            raise console.Failure(f"`{' '.join(command)}` failed:\n{console.tail(result.stdout, 10)}")
-    stamp.write_text(" ".join(ORACLES))
+    command = [str(layout.python), "-m", "venv", "--clear", str(folder)]
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    if result.returncode != 0:
+        raise console.Failure(f"`{' '.join(command)}` failed:\n{console.tail(result.stdout, 10)}")
+    pins.install(python, REQUIREMENTS)
+    stamp.write_text(REQUIREMENTS.read_text())
     return python
 
 

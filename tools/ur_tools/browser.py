@@ -13,7 +13,7 @@ import subprocess
 import time
 from typing import Any, Dict, List, Optional
 
-from . import console
+from . import console, pins
 from .environment import FOREIGN
 from .layout import ROOT, STATE, Layout
 
@@ -105,12 +105,10 @@ def _unpack(folder: pathlib.Path) -> None:
 
 def _install_playwright(layout: Layout) -> None:
     site = layout.site_packages(layout.venv)
-    pinned = re.findall(r"^([\w-]+)==(\S+)$", REQUIREMENTS.read_text(), re.M)
-    if all((site / f"{name}-{version}.dist-info").is_dir() for name, version in pinned):
+    if all((site / f"{pin.name}-{pin.version}.dist-info").is_dir() for pin in pins.read(REQUIREMENTS)):
         return
     console.step("Installing Playwright for the browser tests (54 MB)")
-    _run([str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps", "--no-compile",
-          "--requirement", str(REQUIREMENTS)])
+    pins.install(layout.python, REQUIREMENTS)
 
 
 def _chromium(folder: pathlib.Path) -> Dict[str, str]:
@@ -129,6 +127,8 @@ def environment(layout: Layout, folder: pathlib.Path = FOLDER) -> Dict[str, str]
         found = _chromium(folder)
         _install_playwright(layout)
         return found
+    except pins.Mismatch:
+        raise
     except console.Failure as failure:
         reason = f"{failure} Install chromium, or put it on PATH."
         console.line(f"    the browser tests are skipped: {reason}")

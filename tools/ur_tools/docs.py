@@ -9,7 +9,7 @@ import shutil
 import subprocess
 from typing import Iterator, List, Tuple
 
-from . import console, docs_reference, venv
+from . import console, docs_reference, pins, venv
 from .layout import ROOT, STATE
 
 FOLDER = STATE / "docs"
@@ -32,10 +32,7 @@ def ensure_sphinx() -> pathlib.Path:
     console.step(f"Installing Sphinx ({MEGABYTES} MB)")
     shutil.rmtree(folder, ignore_errors=True)
     subprocess.run([venv.find_python(), "-m", "venv", str(folder)], check=True)
-    command = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--requirement",
-               str(REQUIREMENTS)]
-    if subprocess.run(command).returncode != 0:
-        raise console.Failure("Sphinx could not be installed: check the network connection, then run ./ur docs again")
+    pins.install(python, REQUIREMENTS)
     stamp_file.write_text(stamp)
     return python
 

@@ -2,12 +2,11 @@
 
 import hashlib
 import pathlib
-import re
 import subprocess
 import time
 from typing import Tuple
 
-from . import console
+from . import console, pins
 from .layout import DOWNLOADS, ROOT, Layout
 
 MEGABYTES = 4
@@ -16,8 +15,9 @@ PIN = ROOT / "wheels" / "ur_rtde.txt"
 
 def _pinned() -> Tuple[str, str]:
     """Returns name and SHA-256 of the archive that is pinned in wheels/ur_rtde.txt."""
-    (name, version, digest), = re.findall(r"^([a-z-]+)==([0-9.]+) --hash=sha256:([0-9a-f]+)$", PIN.read_text(), re.M)
-    return f"{name.replace('-', '_')}-{version}.tar.gz", digest
+    pin, = pins.read(PIN)
+    digest, = pin.hashes
+    return f"{pin.name.replace('-', '_')}-{pin.version}.tar.gz", digest
 
 
 def ur_rtde_archive() -> pathlib.Path:
@@ -48,6 +48,7 @@ def ensure(layout: Layout) -> None:
                                 universal_newlines=True)
         if result.returncode == 0 and _is_valid(archive):
             return
+        pins.fail_on_mismatch(PIN, result.stdout)
         if attempt < 3:
             time.sleep(3.0 * attempt)
     raise console.Failure(f"The sources of ur_rtde could not be downloaded in three attempts:\n{console.tail(result.stdout, 12)}\n"

@@ -15,7 +15,7 @@ from typing import Any, Callable, List, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
-from . import console, disk, docs, doctor, fuzz, lint, new, simulation, testing, viewer
+from . import console, disk, docs, doctor, fuzz, lint, new, pin_hashes, sbom, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -201,6 +201,14 @@ def command_docs(options: argparse.Namespace) -> int:
     return docs.run(options)
 
 
+def command_lock(options: argparse.Namespace) -> int:
+    return pin_hashes.run(options)
+
+
+def command_sbom(options: argparse.Namespace) -> int:
+    return sbom.run(options)
+
+
 def command_doctor(options: argparse.Namespace) -> int:
     """Checks this machine, or a robot with `--robot`, which needs no build. `--report` needs one: it asks the nodes."""
     layout = _layout(options)
@@ -297,6 +305,12 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     sub = add("docs", command_docs, "build the site of the documentation; dead links are errors")
     sub.add_argument("--serve", action="store_true", help="show the site on this machine until Ctrl-C")
     sub.add_argument("--port", type=int, default=8000, metavar="PORT", help="of --serve (default: 8000; 0: any)")
+
+    sub = add("lock", command_lock, "write the hashes of the pinned Python packages to wheels/*.txt, after a change of a version")
+    sub.add_argument("files", nargs="*", metavar="FILE", help=f"without .txt (default: all: {', '.join(pin_hashes.FILES)})")
+
+    sub = add("sbom", command_sbom, "write a bill of materials: all software of others, with versions, hashes and licences")
+    sub.add_argument("--output", type=pathlib.Path, metavar="FILE", help="CycloneDX, JSON (default: the standard output)")
 
     for name, function, text in (("format", command_format, "format all C++ files"),
                                  ("lint", command_lint, "check formatting, Python and paths; with --tidy also run clang-tidy")):

@@ -10,7 +10,7 @@ import sys
 import time
 from typing import Dict, Iterable, List, Optional, Sequence
 
-from . import console
+from . import console, pins
 from .layout import ROOT, SUPPORTED_DISTRIBUTIONS, Layout
 
 SUPPORTED = ((3, 10), (3, 12))
@@ -101,14 +101,15 @@ def _is_usable(layout: Layout) -> bool:
 
 
 def _pip_install(layout: Layout, requirements: Sequence[pathlib.Path]) -> None:
-    # PYTHONPATH and PYTHONHOME belong to another environment; PIP_USER would prevent an installation into this one.
-    env = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME", "PIP_USER")}
-    env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
+    env = pins.environment()
     for attempt in range(1, 4):
         with Installation(layout, requirements, env) as installation:
             logs = installation.wait()
         if not logs:
             return
+        for file in requirements:
+            if _log(layout, file) in logs:  # the same file would come at the next attempt
+                pins.fail_on_mismatch(file, _log(layout, file).read_text(errors="replace"))
         if attempt < 3:
             console.line(f"    the installation failed ({', '.join(map(str, logs))}); trying again")
             time.sleep(RETRY_DELAY * attempt)
@@ -118,6 +119,10 @@ def _pip_install(layout: Layout, requirements: Sequence[pathlib.Path]) -> None:
                           "again: downloaded packages are kept.")
 
 
+def _log(layout: Layout, requirements: pathlib.Path) -> pathlib.Path:
+    return layout.base / f"pip_{requirements.stem}.log"
+
+
 class Installation:
     """Installs the packages of all requirement files, each with a pip of its own: most of the time, pip waits for the registry."""
 
@@ -125,13 +130,10 @@ class Installation:
         self._total = sum(_count(file) for file in requirements)
         self._running: "Dict[pathlib.Path, subprocess.Popen[bytes]]" = {}  # by log
         for file in requirements:
-            # Compiling the modules that are never imported would take a third of the time.
-            command = [str(layout.python), "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--no-deps",
-                       "--no-compile", "--requirement", str(file)]
-            log = layout.base / f"pip_{file.stem}.log"
+            log = _log(layout, file)
             with log.open("w") as output:
-                self._running[log] = subprocess.Popen(command, env=env, stdout=output, stderr=subprocess.STDOUT,
-                                                      stdin=subprocess.DEVNULL)
+                self._running[log] = subprocess.Popen(pins.install_command(layout.python, file), env=env, stdout=output,
+                                                      stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
 
     def __enter__(self) -> "Installation":
         return self
@@ -165,7 +167,7 @@ class Installation:
 
 def _count(requirements: pathlib.Path) -> int:
     """Returns the number of packages: those with several versions, for several versions of Python, count once."""
-    return len(set(re.findall(r"^([\w.-]+)==", requirements.read_text(), re.M)))
+    return len({pin.name for pin in pins.read(requirements)})
 
 
 def is_current(layout: Layout) -> bool:

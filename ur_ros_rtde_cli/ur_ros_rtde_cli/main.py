@@ -28,7 +28,7 @@ WITHOUT_NODES = ("plugins", "plot", "compare", "urdf", "calibration", "doctor", 
 
 # Commands of the script `ur` in a checkout. They are not installed.
 CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "docs", "format", "lint",
-                     "doctor", "clean")
+                     "lock", "sbom", "doctor", "clean")
 
 # argcomplete sets it when a shell asks for completions.
 COMPLETION_VARIABLE = "_ARGCOMPLETE"

@@ -30,8 +30,8 @@ Status set_realtime_priority(int priority)
         ErrorCode::not_supported,
         fmt::format("realtime_priority {} is not permitted to this process ({}) and is ignored: "
                     "give its user rtprio {} or more in /etc/security/limits.conf, or its container "
-                    "--cap-add=sys_nice",
-                    priority, std::strerror(error), priority));
+                    "--ulimit rtprio={}",
+                    priority, std::strerror(error), priority, priority));
   }
   return {};
 }
