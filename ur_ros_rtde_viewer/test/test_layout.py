@@ -20,6 +20,8 @@ IS_ON_TOP = """element => {
         element.contains(document.elementFromPoint(left + x * (right - left), top + y * (bottom - top))));
 }"""
 
+SCENE_WIDTH = "() => window.__viserMutable.canvas.getBoundingClientRect().width"
+
 
 @pytest.fixture(scope="module")
 def viewer():
@@ -39,18 +41,24 @@ def opened(browser, viewer, size):
     """The page in a window of this size, after its layout has settled, with notifications."""
     width, height = size
     tab = Tab(browser, viewer.url, {"width": width, "height": height})
-    until(lambda: len(viewer.server.get_clients()) == 1, "the client")
-    client, = viewer.server.get_clients().values()
-    for number in range(NOTIFICATIONS):
-        client.add_notification(f"Notification {number}", "This text needs several lines. " * 4)
-    until(lambda: tab.page.locator(NOTIFICATION).count() >= NOTIFICATIONS, "the notifications")
-    yield tab
-    tab.close()
-    until(lambda: not viewer.server.get_clients(), "the end of the client")
+    try:
+        until(lambda: len(viewer.server.get_clients()) == 1, "the client")
+        client, = viewer.server.get_clients().values()
+        for number in range(NOTIFICATIONS):
+            client.add_notification(f"Notification {number}", "This text needs several lines. " * 4)
+        until(lambda: tab.page.locator(NOTIFICATION).count() >= NOTIFICATIONS, "the notifications")
+        yield tab
+    finally:
+        tab.close()
+        until(lambda: not viewer.server.get_clients(), "the end of the client")
 
 
 def becomes_on_top(locator, what):
     until(lambda: locator.evaluate(IS_ON_TOP), what, 20.0)
+
+
+def has_wide_scene(tab):
+    until(lambda: tab.page.evaluate(SCENE_WIDTH) >= 500, "a scene of 500 pixels", 20.0)
 
 
 def plots(tab):
@@ -62,7 +70,8 @@ def open_plots(tab, size):
     if size == PHONE:
         tab.page.get_by_role("button", name="Expand panel Plots").click()
     elif size == SMALL:
-        tab.page.get_by_role("button", name="Expand").click()
+        has_wide_scene(tab)  # the plots have been minimized
+        tab.open("Plots")
     until(lambda: plots(tab).count() == len(PLOTS), "the plots")
 
 
@@ -78,7 +87,6 @@ def test_stop_and_the_tabs_are_in_the_window_and_nothing_covers_them(browser, vi
 @pytest.mark.parametrize("size", [SMALL, LAPTOP, PHONE])
 def test_the_state_is_in_the_window(browser, viewer, size):
     with opened(browser, viewer, size) as tab:
-        tab.open("State")
         becomes_on_top(tab.page.get_by_text("Robot mode", exact=True), "the state")
 
 
@@ -96,12 +104,13 @@ def test_plots_can_be_seen(browser, viewer, size):
 @pytest.mark.parametrize("size", [SMALL, LAPTOP])
 def test_the_scene_is_wide_enough(browser, viewer, size):
     with opened(browser, viewer, size) as tab:
-        canvas = tab.page.locator("canvas:visible").first
-        until(lambda: canvas.bounding_box()["width"] >= 500, "the scene", 20.0)
+        has_wide_scene(tab)
 
 
 def test_on_a_phone_stop_stays_when_the_sheet_is_closed(browser, viewer):
     with opened(browser, viewer, PHONE) as tab:
+        becomes_on_top(tab.page.get_by_role("tab", name="Jog", exact=True), "the sheet")
         tab.page.get_by_text("ur_ros_rtde", exact=True).first.click()
-        until(lambda: not tab.page.get_by_role("tab", name="Jog", exact=True).is_visible(), "the sheet to close")
+        jog = tab.page.get_by_role("tab", name="Jog", exact=True)
+        until(lambda: not jog.evaluate(IS_ON_TOP), "the sheet to close")
         becomes_on_top(tab.button("STOP"), "STOP")

@@ -9,7 +9,7 @@ from ..arguments import RobotOptions
 from . import style
 
 PLOTS_WIDTH, PANEL_WIDTH = 370, 400  # pixels; the six tabs of a robot fit into one row
-NARROW = 0.5  # width of the scene by its height
+NARROW = 0.45  # width of the scene by its height
 
 
 class Layout:
