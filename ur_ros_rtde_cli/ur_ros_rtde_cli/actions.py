@@ -7,6 +7,8 @@ from typing import Any, Dict, Iterable, List, Optional
 from .errors import CliError
 from .plugins import Plugin, action_type, installed
 
+FEEDBACK_TOPIC, FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"  # behind the name and the type of an action
+
 
 def load(name: str, kind: str) -> Any:
     """Returns the class of an action type such as "ur_ros_rtde_msgs/action/MoveJ", with its type support loaded."""
@@ -45,6 +47,9 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def served(node: Any) -> Dict[str, str]:
-    """Returns the types of all actions in the ROS graph by action name."""
-    from rclpy.action.graph import get_action_names_and_types  # imported here because the installed plugins are known without ROS
-    return {name: types[0] for name, types in get_action_names_and_types(node)}
+    """Returns the types of all actions in the ROS graph by action name, from the topics of their feedback.
+
+    rclpy's get_action_names_and_types() never releases its list: 27 KB per call with the actions of this driver.
+    """
+    return {topic.removesuffix(FEEDBACK_TOPIC): types[0].removesuffix(FEEDBACK_TYPE) for topic, types in node.get_topic_names_and_types()
+            if topic.endswith(FEEDBACK_TOPIC) and types[0].endswith(FEEDBACK_TYPE)}

@@ -61,8 +61,8 @@ def chromium():
 class Tab:
     """A tab of the browser with the page of a viewer."""
 
-    def __init__(self, browser, url):
-        self.page = browser.new_page(viewport=WINDOW)
+    def __init__(self, browser, url, window=WINDOW):
+        self.page = browser.new_page(viewport=window)
         self.page.set_default_timeout(1e3 * LIMIT)
         self.page.goto(url)
         self.button("STOP").wait_for()

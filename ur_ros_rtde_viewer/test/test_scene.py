@@ -12,7 +12,7 @@ from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene
-from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, LEAST_FROM_BASE, THICKNESS, turn_z_to
+from ur_ros_rtde_viewer.scene.surfaces import LARGEST_OFFSET, SIZE, THICKNESS, turn_z_to
 from ur_ros_rtde_viewer.scene.urdf import read_description
 from ur_ros_rtde_viewer.state.robot_state import Joints, Pose, RobotState
 
@@ -164,18 +164,24 @@ def test_surfaces_are_drawn_once_and_removed(server, scene):
     assert not drawn()
 
 
+def drawn_center(scene, surface, tcp):
+    scene.show_surfaces([surface], RobotState(tcp_pose=Pose(np.array(tcp), np.array((1.0, 0.0, 0.0, 0.0)))))
+    return tuple(scene._surfaces._drawn[surface].position)
+
+
 def test_the_drawn_part_of_a_surface_stays_near_the_tcp(scene):
+    table, top = ((0.0, 0.0, 0.1), (0.0, 0.0, 1.0)), 0.1 - THICKNESS / 2.0
+    assert drawn_center(scene, table, (0.6, 0.2, 0.9)) == pytest.approx((0.6, 0.2, top))
+    assert drawn_center(scene, table, (0.6 + 0.9 * LARGEST_OFFSET, 0.2, 0.1)) == pytest.approx((0.6, 0.2, top))
+    assert drawn_center(scene, table, (0.6 + 1.1 * LARGEST_OFFSET, 0.2, 0.1)) == pytest.approx((0.6 + 1.1 * LARGEST_OFFSET, 0.2, top))
+
+
+@pytest.mark.parametrize("direction", np.radians((0.0, 20.0, 45.0, 135.0, 250.0)))
+def test_the_drawn_part_of_a_surface_does_not_cut_the_base_of_the_arm(scene, direction):
     table = ((0.0, 0.0, 0.1), (0.0, 0.0, 1.0))
-
-    def center_with_tcp_at(x, z):
-        scene.show_surfaces([table], RobotState(tcp_pose=Pose(np.array((x, 0.2, z)), np.array((1.0, 0.0, 0.0, 0.0)))))
-        return tuple(scene._surfaces._drawn[table].position)
-
-    top = 0.1 - THICKNESS / 2.0
-    assert center_with_tcp_at(0.5, 0.9) == pytest.approx((0.5, 0.2, top))
-    assert center_with_tcp_at(0.5 + 0.9 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5, 0.2, top))
-    assert center_with_tcp_at(0.5 + 1.1 * LARGEST_OFFSET, 0.1) == pytest.approx((0.5 + 1.1 * LARGEST_OFFSET, 0.2, top))
-    assert np.hypot(*center_with_tcp_at(0.05, 0.9)[:2]) == pytest.approx(LEAST_FROM_BASE), "it cuts the base of the arm"
+    x, y, _ = drawn_center(scene, table, (0.2 * np.cos(direction), 0.2 * np.sin(direction), 0.9))
+    beside = np.maximum(np.abs((x, y)) - 0.5 * SIZE, 0.0)
+    assert np.hypot(*beside) > 0.09  # m, the radius of the base of a UR10e
 
 
 def test_calibration_and_tool_are_part_of_the_scene(server, tmp_path):

@@ -5,6 +5,7 @@ import threading
 import time
 from typing import Any, Dict, List
 
+from ..page import style
 from .control_node import ControlNode
 from .form_panel import FormPanel
 from .jog_panel import JogPanel
@@ -14,12 +15,9 @@ from .target_panel import TargetPanel
 from .twin_panel import TwinPanel
 
 STOP_REPEAT = 2.0  # Hz, while the button is held
-STOP_WIDTH = 300  # pixels
+STOP_WIDTH = 220  # pixels; viser makes no panel narrower
 STOP_KEY: Any = "escape"
 EXPAND_PERIOD = 1.0  # s
-# viser has no option for the size of a button. `+` selects the button after this element.
-STOP_STYLE = """<style>div:has(> .stop-style) + div button {height: 72px !important; font-size: 30px; font-weight: 700}</style>
-<div class="stop-style"></div>"""
 # viser ignores hotkeys while an input has the focus, and does not run scripts in its HTML, but event handlers. Esc in an input
 # leaves it and is pressed again outside.
 ESCAPE_IN_INPUTS = """<img src="data:," alt="" style="display: none" onerror="if (!window.escapeInInputs) {
@@ -56,7 +54,7 @@ class Control:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
-            gui.add_html(STOP_STYLE + ESCAPE_IN_INPUTS)
+            gui.add_html(style.STOP + ESCAPE_IN_INPUTS)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
         self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)

@@ -2,6 +2,7 @@
 
 from typing import Any, Hashable
 
+from ..page import style
 from .jog import AXES, HOLD_RATE, MAX_ANGULAR, MAX_LINEAR, Frame, JogSpeed
 from .robot_control import RobotControl
 
@@ -19,6 +20,7 @@ class JogPanel:
             self._linear = gui.add_slider("Speed [m/s]", 0.01, MAX_LINEAR, 0.01, default.linear)
             self._angular = gui.add_slider("Rotation [rad/s]", 0.05, MAX_ANGULAR, 0.05, default.angular)
             self._text = gui.add_markdown("")
+            gui.add_html(style.TWO_COLUMNS)
             for axis in range(len(AXES)):
                 for sign in (1.0, -1.0):
                     self._add_button(axis, sign)

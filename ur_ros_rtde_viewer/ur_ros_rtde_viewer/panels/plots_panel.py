@@ -17,7 +17,7 @@ COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 # Title, curves, first column after the time, and half of the range that is shown at least: noise must not look like a motion.
 PLOTS = (("Joint positions, rad", JOINTS, 0, 0.1), ("Joint velocities, rad/s", JOINTS, 6, 0.1),
          ("Force at the TCP, N", ("x", "y", "z"), 12, 5.0))
-HEIGHT, PADDING = 190, (10, 16, 0, 0)  # pixels; top, right, bottom, left
+HEIGHT, PADDING = 170, (10, 16, 0, 0)  # pixels; three plots fit into a window of 800; top, right, bottom, left
 # uPlot computes the labels of the axes when a scale or the size of the plot changes. viser tells it the width of a plot after its
 # creation; if data arrive at the same moment, uPlot forgets the change of the size. So each drawing changes the scale of a hidden curve.
 HIDDEN = uplot.Series(label="\u200b", scale="drawing", stroke="transparent", points={"show": False})

@@ -7,7 +7,7 @@ import viser
 
 SIZE = 0.7  # m, of the drawn part of a plane
 LARGEST_OFFSET = 0.3  # m, of the TCP from the center of this part, along the plane
-LEAST_FROM_BASE = 0.5 * SIZE + 0.1  # m, of the center
+LEAST_FROM_BASE = 0.5 ** 0.5 * SIZE + 0.1  # m, of the center: half of the diagonal, and the arm's base
 THICKNESS = 0.006  # m
 COLOR, OPACITY = (190, 150, 105), 0.75
 

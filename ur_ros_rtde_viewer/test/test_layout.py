@@ -1,0 +1,116 @@
+"""The page in small windows: STOP, state and plots can be seen and used, also while notifications are shown."""
+
+import contextlib
+
+import pytest
+from running_viewer import RunningViewer, Tab, chromium, until
+from ur_ros_rtde_viewer.panels.plots_panel import PLOTS
+
+BROWSER = True
+SMALL, LAPTOP, PHONE = (1000, 640), (1280, 800), (390, 844)  # pixels
+TABS = ("State", "Record", "Commands", "Jog", "Target", "Twin")
+NOTIFICATIONS = 6
+NOTIFICATION = ".mantine-Notification-root"
+
+# Whether an element is within the window and on top of all others: at its center and near its corners.
+IS_ON_TOP = """element => {
+    const {left, top, right, bottom} = element.getBoundingClientRect();
+    if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) return false;
+    return [[0.5, 0.5], [0.1, 0.1], [0.9, 0.1], [0.1, 0.9], [0.9, 0.9]].every(([x, y]) =>
+        element.contains(document.elementFromPoint(left + x * (right - left), top + y * (bottom - top))));
+}"""
+
+SCENE_WIDTH = "() => window.__viserMutable.canvas.getBoundingClientRect().width"
+
+
+@pytest.fixture(scope="module")
+def viewer():
+    started = RunningViewer("--control")
+    yield started
+    started.close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
+@contextlib.contextmanager
+def opened(browser, viewer, size):
+    """The page in a window of this size, after its layout has settled, with notifications."""
+    width, height = size
+    tab = Tab(browser, viewer.url, {"width": width, "height": height})
+    try:
+        until(lambda: len(viewer.server.get_clients()) == 1, "the client")
+        client, = viewer.server.get_clients().values()
+        for number in range(NOTIFICATIONS):
+            client.add_notification(f"Notification {number}", "This text needs several lines. " * 4)
+        until(lambda: tab.page.locator(NOTIFICATION).count() >= NOTIFICATIONS, "the notifications")
+        yield tab
+    finally:
+        tab.close()
+        until(lambda: not viewer.server.get_clients(), "the end of the client")
+
+
+def becomes_on_top(locator, what):
+    until(lambda: locator.evaluate(IS_ON_TOP), what, 20.0)
+
+
+def has_wide_scene(tab):
+    until(lambda: tab.page.evaluate(SCENE_WIDTH) >= 500, "a scene of 500 pixels", 20.0)
+
+
+def plots(tab):
+    return tab.page.locator(".uplot-container:visible")
+
+
+def open_plots(tab, size):
+    """Opens the plots where they are minimized at first."""
+    if size == PHONE:
+        tab.page.get_by_role("button", name="Expand panel Plots").click()
+    elif size == SMALL:
+        has_wide_scene(tab)  # the plots have been minimized
+        tab.open("Plots")
+    until(lambda: plots(tab).count() == len(PLOTS), "the plots")
+
+
+@pytest.mark.parametrize("size", [SMALL, LAPTOP, PHONE])
+def test_stop_and_the_tabs_are_in_the_window_and_nothing_covers_them(browser, viewer, size):
+    with opened(browser, viewer, size) as tab:
+        for name in TABS:
+            tab.open(name)
+            becomes_on_top(tab.page.get_by_role("tab", name=name, exact=True), f"the tab {name}")
+            becomes_on_top(tab.button("STOP"), f"STOP beside the tab {name}")
+
+
+@pytest.mark.parametrize("size", [SMALL, LAPTOP, PHONE])
+def test_the_state_is_in_the_window(browser, viewer, size):
+    with opened(browser, viewer, size) as tab:
+        becomes_on_top(tab.page.get_by_text("Robot mode", exact=True), "the state")
+
+
+@pytest.mark.parametrize("size", [SMALL, LAPTOP, PHONE])
+def test_plots_can_be_seen(browser, viewer, size):
+    with opened(browser, viewer, size) as tab:
+        open_plots(tab, size)
+        for plot in plots(tab).all():
+            if size != LAPTOP:
+                plot.scroll_into_view_if_needed()
+            becomes_on_top(plot, "the plot")
+        becomes_on_top(tab.button("STOP"), "STOP beside the plots")
+
+
+@pytest.mark.parametrize("size", [SMALL, LAPTOP])
+def test_the_scene_is_wide_enough(browser, viewer, size):
+    with opened(browser, viewer, size) as tab:
+        has_wide_scene(tab)
+
+
+def test_on_a_phone_stop_stays_when_the_sheet_is_closed(browser, viewer):
+    with opened(browser, viewer, PHONE) as tab:
+        becomes_on_top(tab.page.get_by_role("tab", name="Jog", exact=True), "the sheet")
+        tab.page.get_by_text("ur_ros_rtde", exact=True).first.click()
+        jog = tab.page.get_by_role("tab", name="Jog", exact=True)
+        until(lambda: not jog.evaluate(IS_ON_TOP), "the sheet to close")
+        becomes_on_top(tab.button("STOP"), "STOP")

@@ -1,0 +1,39 @@
+"""Style sheets for what viser has no options for. They find viser's elements around or after an empty marker.
+
+In windows that are narrower than PHONE, viser shows all panels in a sheet at the bottom, which a tap on its title closes. There, STOP is
+fixed at the top of the window, and the scene fills what is left.
+"""
+
+PHONE = "@media (max-width: 36em)"
+STOP_HEIGHT, SHEET_HEIGHT = "6.5em", "50%"  # on a phone
+SCENE = ".mantine-Notifications-root ~ div:not(.mantine-Paper-root):has(canvas)"
+
+# Notifications are at the top left of the scene, STOP at its bottom right.
+PAGE = f"""<style>
+.mantine-Notifications-root {{max-height: calc(100% - 14em); overflow: hidden}}
+{PHONE} {{
+  [style*="width: 20em"]:has(.page-style) {{width: 100vw !important}}
+  [style*="max-height: 60%"]:has(.page-style) {{max-height: {SHEET_HEIGHT} !important}}
+  :root:not(:has([style*="display: none"] .page-style)) {SCENE} {{height: calc(100% - {SHEET_HEIGHT}) !important}}
+  .mantine-Notifications-root {{max-height: calc(100% - {SHEET_HEIGHT} - {STOP_HEIGHT} - 2em)}}
+}}
+</style><div class="page-style"></div>"""
+
+# The button after this element, and on a phone all elements of its panel.
+STOP = f"""<style>
+div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; font-weight: 700}}
+{PHONE} {{
+  div:has(> div > .stop-style) {{position: fixed; top: 0; left: 0; right: 0; height: {STOP_HEIGHT}; box-sizing: border-box;
+                                 padding-top: 0.5em; background: var(--mantine-color-body)}}
+  div:has(> .stop-style) + div button {{height: 52px !important}}
+  [style*="display: none"]:has(.stop-style) {{display: block !important; opacity: 1 !important}}
+  .mantine-Tabs-root:has(.stop-style) > [role=button] {{display: none !important}}
+  {SCENE} {{box-sizing: border-box; padding-top: {STOP_HEIGHT}}}
+  .mantine-Notifications-root {{top: calc({STOP_HEIGHT} + 1em) !important}}
+}}
+</style><div class="stop-style"></div>"""
+
+# The buttons after this element.
+TWO_COLUMNS = """<style>
+div:has(> .two-columns) ~ div:has(> button) {display: inline-block; width: calc(50% - 2 * var(--mantine-spacing-xs))}
+</style><div class="two-columns"></div>"""
