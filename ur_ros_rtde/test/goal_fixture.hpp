@@ -99,10 +99,11 @@ class GoalTest : public testing::Test {
  protected:
   ~GoalTest() override { host_.goals().close(Error{ErrorCode::shutdown, "the test ends"}, seconds(10)); }
 
-  void serve()
+  /// `on_client_lost`: empty if goals go on without their client.
+  void serve(std::function<void(const rcl_cxx::GoalUUID &)> on_client_lost = {})
   {
     server_ = std::make_unique<GoalServer>(
-        host_, GoalServer::Description{.type = rcl_cxx::action_type<Trigger>(), .name = "test"},
+        host_, GoalServer::Description{rcl_cxx::action_type<Trigger>(), "test", std::move(on_client_lost)},
         [this](const rcl_cxx::GoalUUID & id, const void *) {
           goal_ = std::make_shared<BehavingGoal>(host_, id, behavior_);
           return goal_;

@@ -234,7 +234,11 @@ class LostClientTest : public GoalTest {
       ended->set_value(outcome.code());
       return outcome;
     };
-    serve(stops);
+    if (stops) {
+      serve([](const rcl_cxx::GoalUUID &) {});
+    } else {
+      serve();
+    }
     {
       rcl_cxx::Node other{make_context("client"), "client"};
       const auto client = rcl_cxx::create_action_client<Trigger>(other, "test");
