@@ -35,8 +35,8 @@ class ServerGoalHandle {
   /// The time of the acceptance in nanoseconds since the epoch, ROS time. Cancel requests compare with it.
   std::int64_t get_goal_stamp() const noexcept;
 
-  /// For what outlasts the goal: on_client_lost is called for its client also after the goal has its result, as
-  /// long as this handle exists. Call it while the goal is active.
+  /// For what outlasts the goal: on_client_lost is called for its client also after the goal has its result,
+  /// as long as this handle exists. Call it while the goal is active.
   void keep_watching_client() noexcept;
 
   /// Returns false and publishes nothing when the goal has a result. A failure is logged.

@@ -32,8 +32,7 @@ RtdeSubscription open(const Robot & robot, const std::vector<std::string> & name
 
 Error silence()
 {
-  return {ErrorCode::link_lost,
-          fmt::format("no package with the outputs for {} ms", silence_limit.count())};
+  return {ErrorCode::link_lost, fmt::format("no package with the outputs for {} ms", silence_limit.count())};
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ void wait_for_standstill(const Robot & robot)
   }
 }
 
-/// Puts a setting back in a destructor. The goal may have lost the right to move the arm, which this needs not.
+/// Puts a setting back in a destructor. The goal may have lost the right to move the arm, which this needs
+/// not.
 template <class Set>
 void put_back(Run & run, const char * what, const Set & set)
 {
@@ -70,7 +71,8 @@ void put_back(Run & run, const char * what, const Set & set)
 
 Outcome set_payload(Run & run, double mass, const Vector3 & center_of_gravity)
 {
-  check_result(run.control()->setPayload(mass, to_ur_center_of_gravity(center_of_gravity)), "set the payload");
+  check_result(run.control()->setPayload(mass, to_ur_center_of_gravity(center_of_gravity)),
+               "set the payload");
   return run.expect([&] { return has_payload(run.state(), mass, center_of_gravity); }, setting_timeout,
                     "the robot still reports another payload");
 }
@@ -100,9 +102,7 @@ Outcome set_tcp(Run & run, const std::vector<double> & offset)
 }
 
 TemporaryPayload::TemporaryPayload(Run & run, double mass, const Vector3 & center_of_gravity)
-    : run_(run),
-      mass_before_(known_payload(run.state())),
-      center_of_gravity_before_(run.state().payload_cog)
+    : run_(run), mass_before_(known_payload(run.state())), center_of_gravity_before_(run.state().payload_cog)
 {
   throw_if_failed(set_payload(run, mass, center_of_gravity));
 }
@@ -128,7 +128,8 @@ TemporaryTcp::~TemporaryTcp()
   if (keeps_) {
     return;
   }
-  put_back(run_, "the TCP", [this](ur_rtde::RTDEControlInterface & control) { return control.setTcp(before_); });
+  put_back(run_, "the TCP",
+           [this](ur_rtde::RTDEControlInterface & control) { return control.setTcp(before_); });
 }
 
 }  // namespace ur_ros_rtde

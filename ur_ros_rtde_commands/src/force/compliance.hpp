@@ -12,8 +12,8 @@ namespace ur_ros_rtde {
 Outcome end_mode_after(Run & run, double duration, Mode & mode,
                        const std::function<void(const Sample &)> & observe = {});
 
-/// Checks the fields `duration` and `outlives_client`. A mode that ends with its goal may last 1 day and does not
-/// outlive its client; one that does not end with its goal has the duration 0.
+/// Checks the fields `duration` and `outlives_client`. A mode that ends with its goal may last 1 day and does
+/// not outlive its client; one that does not end with its goal has the duration 0.
 template <typename Goal>
 Check & check_end_of_mode(Check & check, const Goal & goal, bool ends_with_goal)
 {

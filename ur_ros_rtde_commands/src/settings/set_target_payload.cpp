@@ -39,8 +39,7 @@ class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPaylo
     check_result(run.control()->setTargetPayload(goal.mass, to_ur_center_of_gravity(cog), inertia),
                  "set the payload");
     const auto is_set = [&] {
-      return has_payload(run.state(), goal.mass, cog) &&
-             has_inertia(run.state(), goal.inertia);
+      return has_payload(run.state(), goal.mass, cog) && has_inertia(run.state(), goal.inertia);
     };
     return run.expect(is_set, setting_timeout, "the robot still reports another payload");
   }

@@ -20,9 +20,10 @@ class WaitsForOutput : public Command<SendScript> {
   {
     const Outputs outputs(run.robot(), {"timestamp", "actual_q", goal.script});
     const auto is_above = [&] { return outputs.number(goal.script) > 4.0; };
-    const Outcome outcome = run.expect(is_above, std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                                     std::chrono::duration<double>(goal.timeout)),
-                                       "the value is too small", ErrorCode::not_reached);
+    const Outcome outcome = run.expect(
+        is_above,
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(goal.timeout)),
+        "the value is too small", ErrorCode::not_reached);
     for (const double position : outputs.vector("actual_q")) {
       run.result().output.push_back(fmt::format("{}", position));
     }
@@ -41,8 +42,8 @@ class UsesAnotherTool : public Command<SendScript> {
       tcp.keep();
     }
     run.control()->speedJ({0.0, 0.0, 0.0, 0.0, 0.0, 0.2}, 1.0, 0.0);
-    const auto why = run.sleep_for(std::chrono::duration_cast<std::chrono::nanoseconds>(
-        std::chrono::duration<double>(goal.timeout)));
+    const auto why = run.sleep_for(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(goal.timeout)));
     return why ? Outcome(*why) : run.stop_motion();
   }
 };

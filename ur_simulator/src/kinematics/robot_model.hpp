@@ -66,8 +66,8 @@ tl::expected<std::reference_wrapper<const RobotModel>, std::string> find_robot_m
 /// factory. `seed` selects the arm.
 RobotModel with_random_calibration(RobotModel model, std::uint64_t seed);
 
-/// Default joint position after power-on, which the documentation and the examples use as well: the tool points
-/// down, away from singularities, and nothing is exact, as on a robot.
+/// Default joint position after power-on, which the documentation and the examples use as well: the tool
+/// points down, away from singularities, and nothing is exact, as on a robot.
 Vector6 default_position(const RobotModel & model);
 
 }  // namespace ur_simulator

@@ -243,7 +243,8 @@ SafetyActions Safety::step(ControllerState & state)
 {
   cycle_ = state.cycle;
   now_ = state.timestamp;
-  program_runs_ = state.runtime_state == RuntimeState::playing || state.runtime_state == RuntimeState::resuming;
+  program_runs_ =
+      state.runtime_state == RuntimeState::playing || state.runtime_state == RuntimeState::resuming;
   update_standstill(state);
   check_limits(state);
   update_power_cut();

@@ -68,9 +68,9 @@ class InterpreterMode {
   std::deque<Line> queue_;            ///< received, not interpreted
   std::deque<Statement> statements_;  ///< interpreted, not executed
   std::size_t queued_bytes_ = 0;
-  std::size_t cycle_bytes_ = 0;       ///< interpreted in this control cycle
-  bool clearing_ = false;             ///< a statement that clears is interpreted, but not executed
-  bool may_interpret_ = false;        ///< the program is not being executed by the caller of begin()
+  std::size_t cycle_bytes_ = 0;  ///< interpreted in this control cycle
+  bool clearing_ = false;        ///< a statement that clears is interpreted, but not executed
+  bool may_interpret_ = false;   ///< the program is not being executed by the caller of begin()
   bool end_requested_ = false;
   bool clear_requested_ = false;
   std::uint32_t last_id_ = 0;

@@ -54,17 +54,17 @@ class Program {
 tl::expected<Program, CompileError> compile(std::string_view text, const Library & library,
                                             const CompileLimits & limits = {});
 
-/// A program and statements that are added while it runs. Its code, and that of earlier statements, keeps its place, so
-/// that running threads can continue. Only added statements see their new variables. Adding takes time in
-/// proportion to the statements alone.
+/// A program and statements that are added while it runs. Its code, and that of earlier statements, keeps its
+/// place, so that running threads can continue. Only added statements see their new variables. Adding takes
+/// time in proportion to the statements alone.
 class ExtendedProgram {
  public:
   /// `program` was compiled with this library, which outlives this object.
   ExtendedProgram(const Program & program, const Library & library, const CompileLimits & limits = {});
   ~ExtendedProgram();
 
-  /// Adds statements at the first level. Returns the function in Code::functions that executes them. Changes nothing
-  /// if they do not compile.
+  /// Adds statements at the first level. Returns the function in Code::functions that executes them. Changes
+  /// nothing if they do not compile.
   tl::expected<std::uint32_t, CompileError> add(std::string_view statements);
   /// Grows with each call of add().
   const Code & code() const;

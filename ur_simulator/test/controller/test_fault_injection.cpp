@@ -63,10 +63,12 @@ TEST_F(FaultInjectionTest, AStallThatEndsAtOnceDoesNotSilenceAConnection)
   ASSERT_TRUE(idle.start());
   const auto timestamp = [&] { return fast.state()["timestamp"].get<double>(); };
   const double full = timestamp() + 60.0;  // 9 MB, more than the buffers of both ends
-  ASSERT_TRUE(fast.wait_until([&](const json & state) { return state["timestamp"].get<double>() > full; }, seconds(60)));
+  ASSERT_TRUE(fast.wait_until([&](const json & state) { return state["timestamp"].get<double>() > full; },
+                              seconds(60)));
   TcpClient control_port(fast.address(), fast.ports().control);
-  control_port.send("{\"command\": \"stall_links\", \"which\": \"rtde\"}\n"
-                    "{\"command\": \"stall_links\", \"which\": \"rtde\", \"stalled\": false}\n");
+  control_port.send(
+      "{\"command\": \"stall_links\", \"which\": \"rtde\"}\n"
+      "{\"command\": \"stall_links\", \"which\": \"rtde\", \"stalled\": false}\n");
   for (int i = 0; i < 2; ++i) {
     EXPECT_TRUE(json::parse(control_port.receive_line())["ok"]);
   }

@@ -1,5 +1,6 @@
-// Each safety mode × each event. The modes and their recoveries are those of the user manuals ("Safety modes", "Stop
-// categories", "Safeguard stop"); that the safeguard is an input with memory is what its wiring makes it.
+// Each safety mode × each event. The modes and their recoveries are those of the user manuals ("Safety
+// modes", "Stop categories", "Safeguard stop"); that the safeguard is an input with memory is what its wiring
+// makes it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +48,8 @@ constexpr auto V = SafetyMode::violation;
 constexpr auto F = SafetyMode::fault;
 
 const std::vector<Row> table{
-    // history                                                  protective, unlock, open, close, press, release,
+    // history                                                  protective, unlock, open, close, press,
+    // release,
     //                                                          system, reduce, restart, violation, fault
     {"normal", {}, N, {P, N, G, N, E, N, S, R, N, V, F}},
     {"reduced", {Event::reduce}, R, {P, R, G, R, E, R, S, R, R, V, F}},

@@ -33,7 +33,8 @@ TEST(InterpreterQueueTest, NoCycleInterpretsMoreThanAFewStatements)
     mode.begin_cycle();
   };
   for (std::uint32_t i = 0; i < sent; ++i) {  // all in one control cycle
-    mode.receive("movej([0, -1.57, 1.57, -1.57, -1.57, 0], a=0.5, v=0.5)", [&](const std::string &) { ++answers; });
+    mode.receive("movej([0, -1.57, 1.57, -1.57, -1.57, 0], a=0.5, v=0.5)",
+                 [&](const std::string &) { ++answers; });
   }
   for (int cycle = 0; cycle < 100; ++cycle) {
     end_cycle();

@@ -149,8 +149,9 @@ TEST_F(SocketBuiltinTest, AReadEndsWhenAnotherThreadClosesTheSocket)
 TEST_F(SocketBuiltinTest, TheNumberOfOpenSocketsIsLimited)
 {
   run("i = 0\n while i < 300:\n socket_open(\"host\", 50001, to_str(i % 99))\n i = i + 1\n end\n x = 1");
-  ScriptRunner many("def many():\n i = 0\n while True:\n socket_open(\"host\", 50001, to_str(i))\n i = i + 1\n end\nend",
-                    library());
+  ScriptRunner many(
+      "def many():\n i = 0\n while True:\n socket_open(\"host\", 50001, to_str(i))\n i = i + 1\n end\nend",
+      library());
   EXPECT_EQ(many.finish(3000), MachineStatus::failed);
   EXPECT_NE(many.machine->error().message.find("100 sockets are open"), std::string::npos);
 }

@@ -121,8 +121,7 @@ TEST(XmlRpcTest, ManyOpenTagsAreRejected)
     for (int i = 0; i < 150000; ++i) {
       tags += tag;
     }
-    EXPECT_EQ(parse_xml_rpc_response(tags).error(),
-              "XML-RPC response: XML_ELEMENT_DEPTH_EXCEEDED in line 1");
+    EXPECT_EQ(parse_xml_rpc_response(tags).error(), "XML-RPC response: XML_ELEMENT_DEPTH_EXCEEDED in line 1");
   }
 }
 

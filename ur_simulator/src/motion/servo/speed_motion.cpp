@@ -28,7 +28,8 @@ Vector6 SpeedMotion::next_velocity(const Vector6 & velocity,
   constexpr double tolerance = 1e-9;
   const double last_scaling = last_scaling_.value_or(scaling_);
   const Vector6 target = scaling_ * target_;
-  const bool is_scaled = last_scaling > tolerance && size(velocity) <= (1.0 + tolerance) * size(last_scaling * target_);
+  const bool is_scaled =
+      last_scaling > tolerance && size(velocity) <= (1.0 + tolerance) * size(last_scaling * target_);
   const Vector6 now = is_scaled ? Vector6(velocity * (scaling_ / last_scaling)) : velocity;
   const Vector6 change = target - now;
   const double step = acceleration_ * duration_ * (is_scaled ? scaling_ * scaling_ : 1.0);

@@ -6,9 +6,10 @@
 
 namespace ur_simulator {
 
-/// A motion to a target velocity, optionally for a limited time: speedj, speedl and the stops. The speed slider
-/// scales its time, and thus its velocity: UR's passthrough trajectory controller, which executes trajectories by
-/// speedj, slows down with the slider. What decelerates to standstill is not scaled (assumed).
+/// A motion to a target velocity, optionally for a limited time: speedj, speedl and the stops. The speed
+/// slider scales its time, and thus its velocity: UR's passthrough trajectory controller, which executes
+/// trajectories by speedj, slows down with the slider. What decelerates to standstill is not scaled
+/// (assumed).
 class SpeedMotion : public Motion {
  public:
   bool call_complete() const final { return call_complete_; }
@@ -22,8 +23,8 @@ class SpeedMotion : public Motion {
 
   /// Starts a cycle; decelerates when the time is up.
   void begin_cycle(const TimeStep & time_step);
-  /// The velocity after this cycle: it goes straight to the target. `size` of a change is at most acceleration times
-  /// time; both are scaled, except for an arm that is too fast.
+  /// The velocity after this cycle: it goes straight to the target. `size` of a change is at most
+  /// acceleration times time; both are scaled, except for an arm that is too fast.
   Vector6 next_velocity(const Vector6 & velocity, const std::function<double(const Vector6 &)> & size);
   /// Ends a cycle with this velocity.
   void end_cycle(const Vector6 & velocity);

@@ -28,7 +28,8 @@ class Compiler : private ExpressionCompiler {
     compile_function(statements);
     const auto & names = symbols().global_names();
     code().global_names.insert(code().global_names.end(),
-                               names.begin() + static_cast<std::ptrdiff_t>(code().global_names.size()), names.end());
+                               names.begin() + static_cast<std::ptrdiff_t>(code().global_names.size()),
+                               names.end());
     symbols().accept_extension(added);
     return added.function;
   }
@@ -285,7 +286,10 @@ tl::expected<Program, CompileError> compile(std::string_view text, const Library
 class ExtendedProgram::Impl {
  public:
   Impl(const Program & program, const Library & library, const CompileLimits & limits)
-      : library_(library), limits_(limits), code_(program.code()), symbols_(parse_again(program.code().source))
+      : library_(library),
+        limits_(limits),
+        code_(program.code()),
+        symbols_(parse_again(program.code().source))
   {
   }
 
@@ -320,7 +324,9 @@ class ExtendedProgram::Impl {
   /// What was added to a Code since its construction can be removed.
   class CodeSize {
    public:
-    explicit CodeSize(const Code & code) : sizes_(apply(code, [](const auto & part) { return part.size(); })) {}
+    explicit CodeSize(const Code & code) : sizes_(apply(code, [](const auto & part) { return part.size(); }))
+    {
+    }
     void restore(Code & code) const
     {
       auto size = sizes_.begin();
@@ -350,7 +356,8 @@ class ExtendedProgram::Impl {
   SymbolTable symbols_;
 };
 
-ExtendedProgram::ExtendedProgram(const Program & program, const Library & library, const CompileLimits & limits)
+ExtendedProgram::ExtendedProgram(const Program & program, const Library & library,
+                                 const CompileLimits & limits)
     : impl_(std::make_unique<Impl>(program, library, limits))
 {
 }

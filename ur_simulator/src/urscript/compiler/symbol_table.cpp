@@ -40,7 +40,8 @@ void SymbolTable::reject_extension(std::size_t definitions, std::size_t globals)
   for (; definitions_.size() > definitions; definitions_.pop_back()) {
     symbols_.erase(definitions_.back());
   }
-  std::erase_if(extension_variables_, [globals](const auto & variable) { return variable.second >= globals; });
+  std::erase_if(extension_variables_,
+                [globals](const auto & variable) { return variable.second >= globals; });
   global_names_.resize(globals);
 }
 
