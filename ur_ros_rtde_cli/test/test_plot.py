@@ -50,13 +50,19 @@ def test_writes_a_figure(file, monkeypatch, capsys, arguments, name):
     ("timestamp,a\n0,1\n1,x\n", [], "run.csv:3: could not convert string to float: 'x'"),
     ("timestamp,a\n0,1\n1,2\n", ["b"], "run.csv has no output b. It has: a"),
     ("timestamp,a\n0,1\n1,2\n", ["--output", "figure.doc"], "figure.doc: the name of a figure ends with .png, .pdf, .svg"),
-    ("timestamp,a\n0,1\n1,2\n", ["--output", "/proc/figure.png"], "/proc/figure.png cannot be written"),
 ])
 def test_reports_what_cannot_be_drawn(tmp_path, monkeypatch, capsys, text, arguments, message):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "run.csv").write_text(text)
     assert main.main(["plot", "run.csv", *arguments]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_is_a_failure_and_no_wrong_argument(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run.csv").write_text("timestamp,a\n0,1\n1,2\n")
+    assert main.main(["plot", "run.csv", "--output", "/proc/figure.png"]) == 1
+    assert "/proc/figure.png cannot be written" in capsys.readouterr().err
 
 
 def test_reports_a_missing_file():

@@ -18,6 +18,7 @@ COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 PLOTS = (("Joint positions, rad", JOINTS, 0, 0.1), ("Joint velocities, rad/s", JOINTS, 6, 0.1),
          ("Force at the TCP, N", ("x", "y", "z"), 12, 5.0))
 HEIGHT, PADDING = 170, (10, 16, 0, 0)  # pixels; three plots fit into a window of 800; top, right, bottom, left
+AXES = (uplot.Axis(), uplot.Axis(space=15))  # pixels between labels; uPlot's 30 leave one label in this height
 # uPlot computes the labels of the axes when a scale or the size of the plot changes. viser tells it the width of a plot after its
 # creation; if data arrive at the same moment, uPlot forgets the change of the size. So each drawing changes the scale of a hidden curve.
 HIDDEN = uplot.Series(label="\u200b", scale="drawing", stroke="transparent", points={"show": False})
@@ -54,7 +55,7 @@ class PlotsPanel:
         series = (uplot.Series(label="s"), *(uplot.Series(label=name, stroke=color, width=1.5, points={"show": False})
                                              for name, color in zip(names, COLORS)), HIDDEN)
         return self._server.gui.add_uplot(tuple(np.zeros(1) for _ in series), series, title=title, height=HEIGHT, padding=PADDING,
-                                          scales=_scales(smallest), legend=uplot.Legend(show=True, live=False))
+                                          scales=_scales(smallest), axes=AXES, legend=uplot.Legend(show=True, live=False))
 
     @property
     def paused(self) -> bool:

@@ -30,6 +30,10 @@ double seconds(std::chrono::steady_clock::duration duration)
 /// original script. Adds it if the text has none.
 std::string with_original_line(std::string text, int sent_line, int original_line)
 {
+  const std::string syntax_error = fmt::format("syntax_error_on_line:{}:", sent_line);
+  if (original_line > 0 && text.starts_with(syntax_error)) {
+    return fmt::format("syntax error in line {}: {}", original_line, text.substr(syntax_error.size()));
+  }
   if (original_line > 0 && text.find("line") == std::string::npos) {
     return fmt::format("{} (line {})", text, original_line);
   }
