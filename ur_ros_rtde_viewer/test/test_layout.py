@@ -40,17 +40,18 @@ def browser():
 def opened(browser, viewer, size):
     """The page in a window of this size, after its layout has settled, with notifications."""
     width, height = size
+    others = set(viewer.server.get_clients())
     tab = Tab(browser, viewer.url, {"width": width, "height": height})
     try:
-        until(lambda: len(viewer.server.get_clients()) == 1, "the client")
-        client, = viewer.server.get_clients().values()
+        until(lambda: set(viewer.server.get_clients()) > others, "the client")
+        client, = (client for number, client in viewer.server.get_clients().items() if number not in others)
         for number in range(NOTIFICATIONS):
             client.add_notification(f"Notification {number}", "This text needs several lines. " * 4)
         until(lambda: tab.page.locator(NOTIFICATION).count() >= NOTIFICATIONS, "the notifications")
         yield tab
     finally:
         tab.close()
-        until(lambda: not viewer.server.get_clients(), "the end of the client")
+        until(lambda: set(viewer.server.get_clients()) <= others, "the end of the client")
 
 
 def becomes_on_top(locator, what, scrolls=False):
