@@ -81,15 +81,6 @@ def open_plots(tab, size):
     until(lambda: plots(tab).count() == len(PLOTS), "the plots")
 
 
-def test_on_a_phone_stop_stays_when_the_sheet_is_closed(browser, viewer):
-    with opened(browser, viewer, PHONE) as tab:
-        becomes_on_top(tab.page.get_by_role("tab", name="Jog", exact=True), "the sheet")
-        tab.page.get_by_text("ur_ros_rtde", exact=True).first.click()
-        jog = tab.page.get_by_role("tab", name="Jog", exact=True)
-        until(lambda: not jog.evaluate_all(f"tabs => tabs.some({IS_ON_TOP})"), "the sheet to close")
-        becomes_on_top(tab.button("STOP"), "STOP")
-
-
 @pytest.fixture(scope="module", params=[SMALL, LAPTOP, PHONE], ids=["small", "laptop", "phone"])
 def page(request, browser, viewer):
     """The size of a window, and the page in it. The tests of a page run in their order: the last one opens the plots."""
