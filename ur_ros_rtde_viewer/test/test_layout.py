@@ -1,9 +1,10 @@
 """The page in small windows: STOP, state and plots can be seen and used, also while notifications are shown."""
 
 import contextlib
+import threading
 
 import pytest
-from running_viewer import RunningViewer, Tab, chromium, until
+from running_viewer import LIMIT, RunningViewer, Tab, chromium, until
 from ur_ros_rtde_viewer.panels.plots_panel import PLOTS
 
 BROWSER = True
@@ -105,6 +106,19 @@ def test_the_scene_is_wide_enough(page):
     size, tab = page
     if size != PHONE:
         has_wide_scene(tab)
+
+
+def test_a_tap_on_the_title_of_a_phone_does_not_disable_stop(page, viewer, monkeypatch):
+    size, tab = page
+    if size != PHONE:
+        return
+    pressed = threading.Event()
+    monkeypatch.setattr(viewer.viewer.control, "stop", pressed.set)
+    title = tab.page.get_by_text("ur_ros_rtde", exact=True).locator("visible=true").first.bounding_box()
+    tab.page.mouse.click(title["x"] + 0.5 * title["width"], title["y"] + 0.5 * title["height"])
+    tab.open("Jog")
+    tab.button("STOP").click()
+    assert pressed.wait(LIMIT)
 
 
 def test_plots_can_be_seen(page):

@@ -1,7 +1,7 @@
 """Style sheets for what viser has no options for. They find viser's elements around or after an empty marker.
 
-In windows that are narrower than PHONE, viser shows all panels in a sheet at the bottom, which a tap on its title closes. There, STOP is
-fixed at the top of the window, and the scene fills what is left.
+In windows that are narrower than PHONE, viser shows all panels in a sheet at the bottom. There, STOP is fixed at the top of the window,
+and the scene fills what is left. A tap on the title of the sheet would close it, and disable STOP: it does nothing where there is STOP.
 """
 
 PHONE = "@media (max-width: 36em)"
@@ -26,7 +26,8 @@ div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; 
   div:has(> div > .stop-style) {{position: fixed; top: 0; left: 0; right: 0; height: {STOP_HEIGHT}; box-sizing: border-box;
                                  padding-top: 0.5em; background: var(--mantine-color-body)}}
   div:has(> .stop-style) + div button {{height: 52px !important}}
-  [style*="display: none"]:has(.stop-style) {{display: block !important; opacity: 1 !important}}
+  [style*="width: 20em"]:has(.stop-style) > div:first-child {{pointer-events: none}}
+  [style*="width: 20em"]:has(.stop-style) > div:first-child button {{pointer-events: auto}}
   .mantine-Tabs-root:has(.stop-style) > [role=button] {{display: none !important}}
   {SCENE} {{box-sizing: border-box; padding-top: {STOP_HEIGHT}}}
   .mantine-Notifications-root {{top: calc({STOP_HEIGHT} + 1em) !important}}

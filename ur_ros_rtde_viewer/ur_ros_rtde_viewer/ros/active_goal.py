@@ -2,7 +2,7 @@
 
 import importlib
 import time
-from typing import Any, Optional
+from typing import Any, Dict, Optional
 
 from rclpy.qos import QoSProfile
 
@@ -14,12 +14,15 @@ SILENCE = 0.5  # s without feedback, after which a goal with feedback has ended;
 
 
 class ActiveGoalTopic:
-    """The name of the goal comes once a second from /diagnostics; progress comes from the feedback of its action."""
+    """The name of the goal comes once a second from /diagnostics; progress comes from the feedback of its action.
+
+    Subscriptions are kept for the next goal of the action, because each new one costs memory that is not released.
+    """
 
     def __init__(self, nodes: Nodes, prefix: str):
         self._node, self._prefix = nodes.node, prefix
         self._action = ""
-        self._subscription: Any = None
+        self._subscriptions: Dict[str, Any] = {}  # by action
         self._heard: Optional[float] = None
         self.goal: Optional[ActiveGoal] = None
 
@@ -31,29 +34,29 @@ class ActiveGoalTopic:
         self._end()
         if action:
             self._action, self.goal = action, ActiveGoal(action, 0.0, 0.0)
-            self._subscribe(f"{self._prefix}{action}{FEEDBACK}")
+            self._subscribe(action)
 
     def update(self) -> None:
         """Ends a goal whose feedback has ended, up to a second before /diagnostics reports it."""
         if self._heard is not None and time.monotonic() - self._heard > SILENCE:
             self.goal = None
 
-    def _subscribe(self, topic: str) -> None:
-        types = dict(self._node.get_topic_names_and_types()).get(topic)
+    def _subscribe(self, action: str) -> None:
+        topic = f"{self._prefix}{action}{FEEDBACK}"
+        types = None if action in self._subscriptions else dict(self._node.get_topic_names_and_types()).get(topic)
         if types:
-            self._subscription = self._node.create_subscription(_feedback_type(types[0]), topic, self._on_feedback, QoSProfile(depth=1))
+            self._subscriptions[action] = self._node.create_subscription(
+                _feedback_type(types[0]), topic, lambda message: self._on_feedback(action, message), QoSProfile(depth=1))
 
-    def _on_feedback(self, message: Any) -> None:
+    def _on_feedback(self, action: str, message: Any) -> None:
         motion = getattr(message.feedback, "motion", None)
-        if motion is None:
+        if action != self._action or motion is None:
             return
         self._heard = time.monotonic()
         self.goal = ActiveGoal(self._action, motion.progress, motion.elapsed.sec + 1e-9 * motion.elapsed.nanosec)
 
     def _end(self) -> None:
-        if self._subscription is not None:
-            self._node.destroy_subscription(self._subscription)
-        self._action, self._subscription, self._heard, self.goal = "", None, None, None
+        self._action, self._heard, self.goal = "", None, None
 
 
 def _feedback_type(name: str) -> Any:
