@@ -28,7 +28,7 @@ from ur_ros_rtde_msgs.action import MoveJ
 
 ACTIONS = 40  # in the ROS graph
 UPDATES, ROUNDS = 200, 5
-LARGEST_GROWTH = 300.0  # bytes per update, in the round with the smallest one: objects that come and go
+LARGEST_GROWTH = 100.0  # bytes per update, in the round with the smallest one: objects that come and go
 SMALL_OBJECT = 64  # bytes, about, of those that Python does not allocate with malloc()
 CAMERA = {"type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (0.0, 0.0, 1.0), "fov": 1.0, "near": 0.1, "far": 100.0,
           "image_height": 800, "image_width": 1000, "look_at": (0.0, 0.0, 0.0), "up_direction": (0.0, 0.0, 1.0)}

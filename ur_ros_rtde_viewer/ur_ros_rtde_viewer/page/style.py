@@ -6,6 +6,8 @@ and the scene fills what is left. A tap on the title of the sheet would close it
 
 PHONE = "@media (max-width: 36em)"
 STOP_HEIGHT, SHEET_HEIGHT = "6.5em", "50%"  # on a phone
+OPEN = ':root:not(:has([style*="display: none"] .page-style))'  # the sheet
+SHEET_TITLE = '.mantine-Paper-root [style*="width: 20em"]:has(.stop-style) > div:first-child'
 SCENE = ".mantine-Notifications-root ~ div:not(.mantine-Paper-root):has(canvas)"
 
 # Notifications are at the top left of the scene, STOP at its bottom right.
@@ -14,7 +16,8 @@ PAGE = f"""<style>
 {PHONE} {{
   [style*="width: 20em"]:has(.page-style) {{width: 100vw !important}}
   [style*="max-height: 60%"]:has(.page-style) {{max-height: {SHEET_HEIGHT} !important}}
-  :root:not(:has([style*="display: none"] .page-style)) {SCENE} {{height: calc(100% - {SHEET_HEIGHT}) !important}}
+  {OPEN} [style*="max-height: 60%"]:has(.page-style) {{min-height: {SHEET_HEIGHT} !important}}
+  {OPEN} {SCENE} {{height: calc(100% - {SHEET_HEIGHT}) !important}}
   .mantine-Notifications-root {{max-height: calc(100% - {SHEET_HEIGHT} - {STOP_HEIGHT} - 2em)}}
 }}
 </style><div class="page-style"></div>"""
@@ -26,8 +29,8 @@ div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; 
   div:has(> div > .stop-style) {{position: fixed; top: 0; left: 0; right: 0; height: {STOP_HEIGHT}; box-sizing: border-box;
                                  padding-top: 0.5em; background: var(--mantine-color-body)}}
   div:has(> .stop-style) + div button {{height: 52px !important}}
-  [style*="width: 20em"]:has(.stop-style) > div:first-child {{pointer-events: none}}
-  [style*="width: 20em"]:has(.stop-style) > div:first-child button {{pointer-events: auto}}
+  {SHEET_TITLE} {{pointer-events: none}}
+  {SHEET_TITLE} button {{pointer-events: auto}}
   .mantine-Tabs-root:has(.stop-style) > [role=button] {{display: none !important}}
   {SCENE} {{box-sizing: border-box; padding-top: {STOP_HEIGHT}}}
   .mantine-Notifications-root {{top: calc({STOP_HEIGHT} + 1em) !important}}
