@@ -72,7 +72,7 @@ def print_state(session: Session, options: argparse.Namespace) -> int:
     latest = subscribe(session)
     if not session.wait(lambda: "joint_states" in latest, options.wait):
         raise OperationFailed(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
-                       "the robot on?")
+                              "the robot on?")
     session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
     if options.watch and sys.stdout.isatty():
         _watch_on_screen(session, latest)

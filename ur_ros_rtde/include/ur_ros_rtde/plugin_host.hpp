@@ -65,7 +65,7 @@ class CommandHost : public PluginHost {
   /// Number of calls of begin_stop().
   std::uint32_t stops() const { return stops_; }
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
-  /// Replaces the goal before; null: nobody's client does.
+  /// Replaces the goal before; null: no client does.
   void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
   /// A mode that is off has no owner.
   void forget_owner_of_ended_modes();

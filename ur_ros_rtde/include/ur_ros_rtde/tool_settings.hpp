@@ -1,10 +1,16 @@
 #pragma once
 
+#include <chrono>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {
+
+/// How long it may take until the state of the robot contains a new setting.
+constexpr std::chrono::seconds setting_timeout{1};
 
 /// Sets the payload and waits until the robot reports it, which controllers before PolyScope 5.5 do not.
 /// `mass`: kg; `center_of_gravity`: m, in the flange frame. Throws RobotError (rejected_by_robot) if the
@@ -20,41 +26,35 @@ std::vector<double> to_ur_center_of_gravity(const Vector3 & center_of_gravity);
 /// above.
 [[nodiscard]] Outcome set_tcp(Run & run, const std::vector<double> & offset);
 
-/// A payload as long as this object exists. Its destructor waits until the arm is at rest and sets the one
-/// before, also when the goal was canceled; a failure is a warning of the goal. For a part that may still be
-/// in the gripper then, use set_payload(), or keep().
-class [[nodiscard]] TemporaryPayload {
+/// A setting that lasts as long as this object exists. Its destructor waits until the arm is at rest and puts
+/// the setting before back, also after a cancel or if the new one was not confirmed; a failure is a warning
+/// of the goal.
+class [[nodiscard]] TemporarySetting {
  public:
-  /// As set_payload(). Throws RobotError with the reason also if the robot does not report it in time, or
-  /// does not report the one before (not_supported).
-  TemporaryPayload(Run & run, double mass, const Vector3 & center_of_gravity);
-  ~TemporaryPayload();
-  TemporaryPayload(const TemporaryPayload &) = delete;
-  TemporaryPayload & operator=(const TemporaryPayload &) = delete;
-  /// The payload is not put back.
-  void keep() { keeps_ = true; }
+  using PutBack = std::function<bool(ur_rtde::RTDEControlInterface &)>;
+
+  /// Throws RobotError with the reason if `set` fails. `name`: "the payload".
+  TemporarySetting(Run & run, std::string name, const std::function<Outcome()> & set, PutBack put_back);
+  ~TemporarySetting();
+  TemporarySetting(const TemporarySetting &) = delete;
+  TemporarySetting & operator=(const TemporarySetting &) = delete;
+  /// The setting before is not put back.
+  void keep() { put_back_ = nullptr; }
 
  private:
+  TemporarySetting(Run & run, std::string name, PutBack put_back)
+      : run_(run), name_(std::move(name)), put_back_(std::move(put_back))
+  {
+  }
+
   Run & run_;
-  const double mass_before_;
-  const Vector3 center_of_gravity_before_;
-  bool keeps_ = false;
+  const std::string name_;
+  PutBack put_back_;
 };
 
-/// The same for the TCP.
-class [[nodiscard]] TemporaryTcp {
- public:
-  TemporaryTcp(Run & run, const std::vector<double> & offset);
-  ~TemporaryTcp();
-  TemporaryTcp(const TemporaryTcp &) = delete;
-  TemporaryTcp & operator=(const TemporaryTcp &) = delete;
-  /// The TCP is not put back.
-  void keep() { keeps_ = true; }
-
- private:
-  Run & run_;
-  const std::vector<double> before_;
-  bool keeps_ = false;
-};
+/// As set_payload() and set_tcp(). For a part that may still be in the gripper at the end, use set_payload(),
+/// or keep(). Throws RobotError (not_supported) if the robot does not report the payload before.
+TemporarySetting temporary_payload(Run & run, double mass, const Vector3 & center_of_gravity);
+TemporarySetting temporary_tcp(Run & run, const std::vector<double> & offset);
 
 }  // namespace ur_ros_rtde

@@ -12,9 +12,6 @@
 namespace ur_ros_rtde {
 namespace {
 
-/// How long it may take until the state of the robot contains a new setting.
-constexpr std::chrono::seconds setting_timeout{1};
-
 /// The distance (m) or the angle (rad) between two poses, whichever is greater.
 double pose_difference(const std::vector<double> & a, const std::vector<double> & b)
 {
@@ -26,21 +23,14 @@ double pose_difference(const std::vector<double> & a, const std::vector<double> 
   return std::max(std::hypot(offset[0], offset[1], offset[2]), std::hypot(offset[3], offset[4], offset[5]));
 }
 
-void throw_if_failed(const Outcome & outcome)
-{
-  if (!outcome) {
-    throw RobotError(outcome.error());
-  }
-}
-
-double known_payload(const Sample & sample)
+Sample with_payload(const Sample & sample)
 {
   if (std::isnan(sample.payload)) {
     throw RobotError({ErrorCode::not_supported,
                       "this controller does not report its payload (PolyScope 5.5 and later do), which could "
                       "not be put back"});
   }
-  return sample.payload;
+  return sample;
 }
 
 /// Waits for the end of a motion or of a stop. The load of a moving arm is not changed.
@@ -51,19 +41,6 @@ void wait_for_standstill(const Robot & robot)
   const auto deadline = std::chrono::steady_clock::now() + limit;
   for (Sample sample{}; robot.is_moving() && std::chrono::steady_clock::now() < deadline;) {
     static_cast<void>(robot.wait_for_next(sample, timeout));
-  }
-}
-
-/// Puts a setting back in a destructor. The goal may have lost the right to move the arm, which this needs
-/// not.
-template <class Set>
-void put_back(Run & run, const char * what, const Set & set)
-{
-  try {
-    wait_for_standstill(run.robot());
-    check_result(set(*run.control_for_queries().hold()), "accept it");
-  } catch (const std::exception & error) {
-    run.warn(fmt::format("{} was not put back: {}", what, error.what()));
   }
 }
 
@@ -101,35 +78,44 @@ Outcome set_tcp(Run & run, const std::vector<double> & offset)
                     setting_timeout, "the robot still reports another TCP");
 }
 
-TemporaryPayload::TemporaryPayload(Run & run, double mass, const Vector3 & center_of_gravity)
-    : run_(run), mass_before_(known_payload(run.state())), center_of_gravity_before_(run.state().payload_cog)
+/// The other constructor has completed the object: its destructor runs if `set` throws or fails.
+TemporarySetting::TemporarySetting(Run & run, std::string name, const std::function<Outcome()> & set,
+                                   PutBack put_back)
+    : TemporarySetting(run, std::move(name), std::move(put_back))
 {
-  throw_if_failed(set_payload(run, mass, center_of_gravity));
+  if (const Outcome outcome = set(); !outcome) {
+    throw RobotError(outcome.error());
+  }
 }
 
-TemporaryPayload::~TemporaryPayload()
+/// The goal may have lost the right to move the arm, which this does not need.
+TemporarySetting::~TemporarySetting()
 {
-  if (keeps_) {
+  if (!put_back_) {
     return;
   }
-  put_back(run_, "the payload", [this](ur_rtde::RTDEControlInterface & control) {
-    return control.setPayload(mass_before_, to_ur_center_of_gravity(center_of_gravity_before_));
-  });
-}
-
-TemporaryTcp::TemporaryTcp(Run & run, const std::vector<double> & offset)
-    : run_(run), before_(run.control()->getTCPOffset())
-{
-  throw_if_failed(set_tcp(run, offset));
-}
-
-TemporaryTcp::~TemporaryTcp()
-{
-  if (keeps_) {
-    return;
+  try {
+    wait_for_standstill(run_.robot());
+    check_result(put_back_(*run_.control_for_queries().hold()), "accept it");
+  } catch (const std::exception & error) {
+    run_.warn(fmt::format("{} was not put back: {}", name_, error.what()));
   }
-  put_back(run_, "the TCP",
-           [this](ur_rtde::RTDEControlInterface & control) { return control.setTcp(before_); });
+}
+
+TemporarySetting temporary_payload(Run & run, double mass, const Vector3 & center_of_gravity)
+{
+  const Sample before = with_payload(run.state());
+  return {run, "the payload", [&] { return set_payload(run, mass, center_of_gravity); },
+          [before](ur_rtde::RTDEControlInterface & control) {
+            return control.setPayload(before.payload, to_ur_center_of_gravity(before.payload_cog));
+          }};
+}
+
+TemporarySetting temporary_tcp(Run & run, const std::vector<double> & offset)
+{
+  const std::vector<double> before = run.control()->getTCPOffset();
+  return {run, "the TCP", [&] { return set_tcp(run, offset); },
+          [before](ur_rtde::RTDEControlInterface & control) { return control.setTcp(before); }};
 }
 
 }  // namespace ur_ros_rtde

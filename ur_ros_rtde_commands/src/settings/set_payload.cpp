@@ -1,7 +1,6 @@
 #include <ur_ros_rtde_msgs/action/set_payload.hpp>
 
 #include "settings/setting_helpers.hpp"
-#include "ur_ros_rtde/tool_settings.hpp"
 
 namespace ur_ros_rtde {
 

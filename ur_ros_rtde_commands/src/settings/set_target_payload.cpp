@@ -3,7 +3,6 @@
 #include <ur_ros_rtde_msgs/action/set_target_payload.hpp>
 
 #include "settings/setting_helpers.hpp"
-#include "ur_ros_rtde/tool_settings.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -8,11 +8,9 @@
 #include "ur_ros_rtde/check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
 #include "ur_ros_rtde/digital_output.hpp"
+#include "ur_ros_rtde/tool_settings.hpp"
 
 namespace ur_ros_rtde {
-
-/// How long it may take until the state of the robot contains a new setting.
-constexpr std::chrono::seconds setting_timeout{1};
 
 /// Calls `set` and waits until the robot reports that analog output `pin` is `value`, in A or V, within
 /// `tolerance`.

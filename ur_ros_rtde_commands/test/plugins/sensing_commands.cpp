@@ -35,8 +35,8 @@ class WaitsForOutput : public Command<SendScript> {
 class UsesAnotherTool : public Command<SendScript> {
   Outcome run(const Goal & goal, Run & run) override
   {
-    TemporaryPayload payload(run, 2.0, {0.0, 0.0, 0.05});
-    TemporaryTcp tcp(run, {0.0, 0.0, 0.1, 0.0, 0.0, 0.0});
+    TemporarySetting payload = temporary_payload(run, 2.0, {0.0, 0.0, 0.05});
+    TemporarySetting tcp = temporary_tcp(run, {0.0, 0.0, 0.1, 0.0, 0.0, 0.0});
     if (goal.script == "keep") {
       payload.keep();
       tcp.keep();
@@ -48,7 +48,25 @@ class UsesAnotherTool : public Command<SendScript> {
   }
 };
 
+/// Sets a TCP 0.1 m away from the flange, which is not confirmed.
+class FailsToSetTheTool : public Command<SendScript> {
+  Outcome run(const Goal &, Run & run) override
+  {
+    const TemporarySetting tcp(
+        run, "the TCP",
+        [&] {
+          const Outcome set = set_tcp(run, {0.0, 0.0, 0.1, 0.0, 0.0, 0.0});
+          return set ? Outcome::failure(ErrorCode::rejected_by_robot, "not confirmed") : set;
+        },
+        [](ur_rtde::RTDEControlInterface & control) {
+          return control.setTcp({0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+        });
+    return Outcome::success();
+  }
+};
+
 UR_ROS_RTDE_EXPORT(WaitsForOutput, "waits_for_output")
 UR_ROS_RTDE_EXPORT(UsesAnotherTool, "uses_another_tool")
+UR_ROS_RTDE_EXPORT(FailsToSetTheTool, "fails_to_set_the_tool")
 
 }  // namespace ur_ros_rtde

@@ -15,8 +15,8 @@ def driver(simulator, tmp_path_factory):
     """A driver with the commands of test/plugins."""
     environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
     assert environment, "the test commands have not been built"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,waits_for_output,uses_another_tool]",
-                        env=environment)
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,waits_for_output,uses_another_tool,"
+                        "fails_to_set_the_tool]", env=environment)
     yield driver
     driver.stop()
     print(driver.output())
@@ -43,9 +43,14 @@ def test_an_output_that_cannot_be_read_is_named(robot, name, code, text):
     assert result.error_code == code and text in result.message, result.message
 
 
+def receiving_connections(simulator):
+    return simulator.control("delay_links", which="rtde", clients="receive", ms=0)["connections"]
+
+
 def test_a_lost_connection_ends_the_wait_for_an_output(robot, simulator):
+    before = receiving_connections(simulator)
     goal = robot.send(SendScript, "waits_for_output", script="tool_analog_input0", timeout=20.0)
-    wait_for(lambda: goal.accepted, 10.0, "the acceptance")
+    wait_for(lambda: receiving_connections(simulator) > before, 10.0, "the connection of the outputs")
     simulator.control("drop_links", which="rtde", clients="receive")
     result = goal.result()
     assert result.error_code == ErrorCode.LINK_LOST, result.message
@@ -80,6 +85,12 @@ def test_payload_and_tcp_are_put_back_at_rest_after_a_cancel(simulator, other_to
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and "put back" not in result.message, result.message
     assert settings(simulator) == (0.0, 0.0) and simulator.is_at_rest()
+
+
+def test_a_setting_that_is_not_confirmed_is_put_back(robot, simulator):
+    result = robot.send(SendScript, "fails_to_set_the_tool", script="x").result()
+    assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and result.message == "not confirmed", result.message
+    assert settings(simulator) == (0.0, 0.0)
 
 
 def test_payload_and_tcp_can_be_kept(simulator, other_tool):

@@ -5,11 +5,11 @@ import time
 from typing import Any, Dict, Optional
 
 from rclpy.qos import QoSProfile
+from ur_ros_rtde_cli.actions import FEEDBACK_TOPIC, FEEDBACK_TYPE
 
 from ..state.robot_state import ActiveGoal
 from .nodes import Nodes
 
-FEEDBACK = "/_action/feedback"
 SILENCE = 0.5  # s without feedback, after which a goal with feedback has ended; it is published at 20 Hz
 
 
@@ -42,7 +42,7 @@ class ActiveGoalTopic:
             self.goal = None
 
     def _subscribe(self, action: str) -> None:
-        topic = f"{self._prefix}{action}{FEEDBACK}"
+        topic = f"{self._prefix}{action}{FEEDBACK_TOPIC}"
         types = None if action in self._subscriptions else dict(self._node.get_topic_names_and_types()).get(topic)
         if types:
             self._subscriptions[action] = self._node.create_subscription(
@@ -62,4 +62,4 @@ class ActiveGoalTopic:
 def _feedback_type(name: str) -> Any:
     """Returns the message class of "ur_ros_rtde_msgs/action/MoveJ_FeedbackMessage"."""
     package, _, kind = name.split("/")
-    return getattr(importlib.import_module(f"{package}.action"), kind.removesuffix("_FeedbackMessage")).Impl.FeedbackMessage
+    return getattr(importlib.import_module(f"{package}.action"), kind.removesuffix(FEEDBACK_TYPE)).Impl.FeedbackMessage

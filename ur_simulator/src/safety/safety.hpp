@@ -64,8 +64,8 @@ class Safety {
   /// stop. After the release the robot stays in POWER_OFF with safety mode NORMAL.
   void press_emergency_stop(bool system = false);
   SafetyResult release_emergency_stop();
-  /// Safeguard input: the arm stays powered, and stopped as long as it is open, whatever else ends. Closing
-  /// and resetting it resumes the program that it paused.
+  /// Safeguard input: the arm stays powered. While the input is open, no recovery of another stop lets the
+  /// arm move. Closing and resetting it resumes the program that it paused.
   void open_safeguard();
   SafetyResult reset_safeguard();
   /// Switches between safety modes NORMAL and REDUCED.

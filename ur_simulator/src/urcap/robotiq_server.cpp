@@ -37,6 +37,11 @@ int digits(std::string_view name)
   return name == "PRE" ? 3 : name == "FLT" ? 2 : 1;
 }
 
+std::string_view without_line_end(std::string_view request)
+{
+  return request.substr(0, request.find_first_of("\r\n"));
+}
+
 /// "POS" of "GET POS"; "" of any other request.
 std::string_view requested_name(std::string_view request)
 {
@@ -86,7 +91,7 @@ class RobotiqServer::Session {
 
   void answer(std::string_view request)
   {
-    const std::string_view text = request.substr(0, request.find_first_of("\r\n"));
+    const std::string_view text = without_line_end(request);
     const bool late_line_end = text.empty() && line_end_may_follow_;
     line_end_may_follow_ = !request.ends_with('\n');
     if (late_line_end) {
@@ -94,7 +99,7 @@ class RobotiqServer::Session {
     }
     connection_->log().from_peer("{}", text);
     const std::string reply = server_.answer(request);
-    connection_->log().to_peer("{}", std::string_view(reply).substr(0, reply.find('\n')));
+    connection_->log().to_peer("{}", without_line_end(reply));
     connection_->send(reply);
   }
 
@@ -115,7 +120,7 @@ RobotiqServer::RobotiqServer(boost::asio::io_context & io, const std::string & a
 std::string RobotiqServer::answer(std::string_view request)
 {
   const bool has_line_end = request.ends_with('\n');
-  const std::string_view text = request.substr(0, request.find_first_of("\r\n"));
+  const std::string_view text = without_line_end(request);
   if (text.starts_with("SET ")) {
     return set(text.substr(4));
   }

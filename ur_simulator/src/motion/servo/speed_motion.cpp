@@ -1,7 +1,6 @@
 #include "motion/servo/speed_motion.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "motion/path/residual_motion.hpp"
 
@@ -33,8 +32,9 @@ Vector6 SpeedMotion::next_velocity(const Vector6 & velocity,
   const Vector6 now = is_scaled ? Vector6(velocity * (scaling_ / last_scaling)) : velocity;
   const Vector6 change = target - now;
   const double step = acceleration_ * duration_ * (is_scaled ? scaling_ * scaling_ : 1.0);
-  velocity_reached_ = size(change) <= step;
-  return velocity_reached_ ? target : Vector6(now + change * (step / size(change)));
+  const double missing = size(change);
+  velocity_reached_ = missing <= step;
+  return velocity_reached_ ? target : Vector6(now + change * (step / missing));
 }
 
 void SpeedMotion::end_cycle(const Vector6 & velocity)

@@ -36,6 +36,22 @@ class QuickCall final : public Operation {
   double waited_ = 0.0;
 };
 
+/// Limits the time that a secondary program waits. False if it would wait for something else than the
+/// network.
+bool limit_wait(Outcome & outcome)
+{
+  auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome);
+  if (operation == nullptr) {
+    return !std::holds_alternative<NextCycle>(outcome);
+  }
+  if (!(*operation)->is_network_call()) {
+    (*operation)->cancel();
+    return false;
+  }
+  *operation = std::make_unique<QuickCall>(std::move(*operation));
+  return true;
+}
+
 }  // namespace
 
 Interpreter::Next Interpreter::call(const Instruction & instruction)
@@ -117,17 +133,8 @@ Interpreter::Next Interpreter::handle_outcome(const std::string & name, Outcome 
     const bool named = failure->message.starts_with(name + ":");
     return fail_at_current_line(named ? failure->message : name + ": " + failure->message);
   }
-  const bool waits = std::holds_alternative<NextCycle>(outcome) ||
-                     std::holds_alternative<std::unique_ptr<Operation>>(outcome);
-  if (waits && context_->secondary) {
-    auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome);
-    if (operation == nullptr || !(*operation)->is_network_call()) {
-      if (operation != nullptr) {
-        (*operation)->cancel();
-      }
-      return fail_at_current_line("a secondary program cannot call functions that take physical time");
-    }
-    *operation = std::make_unique<QuickCall>(std::move(*operation));
+  if (context_->secondary && !limit_wait(outcome)) {
+    return fail_at_current_line("a secondary program cannot call functions that take physical time");
   }
   drop(arguments);
   if (auto * value = std::get_if<Value>(&outcome)) {
