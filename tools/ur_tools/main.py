@@ -40,7 +40,8 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "completion": "print what lets a shell complete command lines: eval \"$(./ur completion bash)\"",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
-FORWARDED = ("demo", "bench", "chaos", "plan", "sim", "view", "doctor", *CLI)  # to a program, with all options that are not ours
+# To a program, with all options that are not ours.
+FORWARDED = ("demo", "bench", "chaos", "plan", "compare-recording", "sim", "view", "doctor", *CLI)
 
 
 def _add_build_options(parser: argparse.ArgumentParser) -> None:
@@ -102,7 +103,7 @@ def command_shell(options: argparse.Namespace) -> int:
 
 
 def _python_command(name: str, options: argparse.Namespace) -> int:
-    """Runs demo, bench, chaos or plan as a module of its own. `--help` and wrong arguments are handled without a build."""
+    """Runs a module of its own, such as demo. `--help` and wrong arguments are handled without a build."""
     arguments = _forwarded(options)
     layout = _layout(options)
     module = importlib.import_module(f"ur_tools.{name}")
@@ -132,6 +133,10 @@ def command_plan(options: argparse.Namespace) -> int:
 
 def command_chaos(options: argparse.Namespace) -> int:
     return _python_command("chaos", options)
+
+
+def command_compare_recording(options: argparse.Namespace) -> int:
+    return _python_command("compare_recording", options)
 
 
 def _run_cli_from_sources(python: str, arguments: List[str]) -> None:
@@ -290,6 +295,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     add_forwarding("view", command_view, "show robots in the browser: 3D scene, plots, state, recordings")
     add_forwarding("chaos", command_chaos,
                    "send random goals during random faults; with --faults 0 a soak test, with --stops the stop property test")
+    add_forwarding("compare-recording", command_compare_recording, "compare a recording of a robot with the simulator")
     add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 
     for name, text in CLI.items():

@@ -1,10 +1,14 @@
-"""Reads recordings: CSV files with the columns timestamp, NAME or NAME_0 ... NAME_n for each RTDE output, and event."""
+"""Reads recordings: CSV files with the columns timestamp, NAME or NAME_0 ... NAME_n for each RTDE output, and event.
+
+Commas separate the columns, or spaces as in the files of UR's RTDE client library.
+"""
 
 import csv
 import pathlib
 import re
 from dataclasses import dataclass, replace
-from typing import Dict, List, Sequence, Tuple
+from types import MappingProxyType
+from typing import Dict, List, Mapping, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
 
@@ -21,15 +25,17 @@ class Recording:
     events: List[Tuple[float, str]]  # s, text
 
     @classmethod
-    def read(cls, path: pathlib.Path) -> "Recording":
+    def read(cls, path: pathlib.Path, names: Mapping[str, str] = MappingProxyType({}), rate: Optional[float] = None) -> "Recording":
+        """Reads a file. `names`: the column of an output that has another name there, of a vector without the number. `rate`: rows
+        per second, instead of a column with time stamps."""
         try:
             with path.open(newline="") as file:
-                rows = list(csv.reader(file))
+                rows = _rows(file)
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is no text"
             raise CliError(f"{path} cannot be read: {reason}") from None
-        header, rows = (rows[0], rows[1:]) if rows else ([], [])
-        if TIME not in header:
+        header, rows = (_renamed(rows[0], names), rows[1:]) if rows else ([], [])
+        if TIME not in header and rate is None:
             raise CliError(f"{path} has no column {TIME}: record with `ur record {path.name} {TIME} actual_q`")
         if len(rows) < 2:
             raise CliError(f"{path} has {len(rows)} rows: expected 2 or more")
@@ -37,8 +43,8 @@ class Recording:
         numbers = [index for index in range(len(header)) if index != events]
         values = np.array([_numbers(path, line, row, numbers, len(header)) for line, row in enumerate(rows, start=2)])
         columns = {header[index]: values[:, position] for position, index in enumerate(numbers)}
-        times = columns.pop(TIME)
-        times = times - times[0]
+        times = np.arange(len(rows)) / rate if rate is not None else columns[TIME] - columns[TIME][0]
+        columns.pop(TIME, None)
         return cls(path.name, times, _outputs(columns), [] if events is None else
                    [(float(time), row[events]) for time, row in zip(times, rows) if row[events]])
 
@@ -48,6 +54,26 @@ class Recording:
         if missing:
             raise CliError(f"{self.name} has no output {missing[0]}. It has: {', '.join(self.outputs)}")
         return replace(self, outputs={name: self.outputs[name] for name in names or self.outputs})
+
+
+def _rows(file: TextIO) -> List[List[str]]:
+    """Returns the rows that are not empty."""
+    begin = file.readline()
+    file.seek(0)
+    separator = "," if "," in begin or " " not in begin.strip() else " "
+    return [row for row in csv.reader(file, delimiter=separator, skipinitialspace=True) if row]
+
+
+def _renamed(header: Sequence[str], names: Mapping[str, str]) -> List[str]:
+    outputs = {column: output for output, column in names.items()}
+    return [_renamed_column(column.strip(), outputs) for column in header]
+
+
+def _renamed_column(column: str, outputs: Mapping[str, str]) -> str:
+    match = re.fullmatch(r"(.+)_(\d+)", column)
+    if column in outputs:
+        return outputs[column]
+    return f"{outputs[match[1]]}_{match[2]}" if match and match[1] in outputs else column
 
 
 def _numbers(path: pathlib.Path, line: int, row: List[str], columns: Sequence[int], width: int) -> List[float]:

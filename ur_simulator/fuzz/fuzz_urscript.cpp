@@ -40,7 +40,7 @@ class EchoSocket final : public ScriptSocket {
 /// An arm that is reset before each program.
 class Robot {
  public:
-  Robot() : world_(cycle_time, 1)
+  Robot() : world_(model_, 1)
   {
     reset();
     library_ =

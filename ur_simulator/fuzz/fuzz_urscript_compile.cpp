@@ -22,7 +22,7 @@ struct Builtins {
   const RobotModel & model = find_robot_model("ur10e")->get();
   ControllerState state;
   Arm arm{model, cycle_time, default_position(model)};
-  World world{cycle_time, 1};
+  World world{model, 1};
   Watchdog watchdog;
   std::shared_ptr<const urscript::Library> library =
       with_sockets(*make_robot_library({state, arm, world, model, watchdog, {}, cycle_time, nullptr}),

@@ -26,7 +26,7 @@ class SimulatedRobot {
     runner.reset();
     state = ControllerState();
     arm.emplace(model, options_.version.cycle_time(), default_position(model));
-    world.emplace(options_.version.cycle_time(), 1);
+    world.emplace(model, 1);
     collisions.reset();
     arm->teleport(default_position(model), state);
     initial_state_ = state;

@@ -38,6 +38,7 @@
 #include "state/controller_state.hpp"
 #include "ur_simulator/simulated_controller.hpp"
 #include "urcap/robotiq_server.hpp"
+#include "world/joint_sensors.hpp"
 #include "world/world.hpp"
 #include "world_file/event_timeline.hpp"
 
@@ -150,6 +151,7 @@ class Controller {
   std::optional<ClientLog> client_log_;
   CycleTrace trace_;
   std::optional<Arm> arm_;
+  JointSensors joint_sensors_;
   std::optional<World> world_;
   std::optional<Safety> safety_;
   CollisionMonitor collisions_;

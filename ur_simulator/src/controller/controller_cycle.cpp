@@ -61,7 +61,8 @@ void Controller::run_robot_cycle()
   runner_->cycle();
   handle_script_requests();
   arm_->step(state_);
-  joint_history_.record(state_.actual.position);
+  joint_sensors_.step(state_);
+  joint_history_.record(state_.measured.position);
   if (const auto fault = arm_->take_fault()) {
     safety_->trigger_protective_stop(*fault);
   }

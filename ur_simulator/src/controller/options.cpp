@@ -102,9 +102,9 @@ PendantOptions pendant_options(const SimulatorOptions & options, const Polyscope
   return result;
 }
 
-World create_world(const SimulatorOptions & options, double cycle_time)
+World create_world(const SimulatorOptions & options, const RobotModel & model)
 {
-  World world(cycle_time, options.seed);
+  World world(model, options.seed);
   for (const std::string & urcap : options.urcaps) {
     if (urcap == "onrobot_soft_gripper") {
       world.mount_gripper();

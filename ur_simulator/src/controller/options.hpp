@@ -24,6 +24,6 @@ std::chrono::steady_clock::duration cycle_period(const SimulatorOptions & option
 /// Times of the safety system, scaled by SimulatorOptions::recovery_time_factor.
 SafetyTimes safety_times(const SimulatorOptions & options);
 PendantOptions pendant_options(const SimulatorOptions & options, const PolyscopeVersion & version);
-World create_world(const SimulatorOptions & options, double cycle_time);
+World create_world(const SimulatorOptions & options, const RobotModel & model);
 
 }  // namespace ur_simulator

@@ -73,6 +73,7 @@ struct Arm::Impl {
   bool canceled = false;                         ///< the active motion only decelerates
   bool is_stop = false;  ///< the active motion is a stop: leaving its path is no fault
   bool paused = false;
+  double start_scaling = 1.0;               ///< of paths, grows from 0 to 1 after the start of a program
   const ControllerState * state = nullptr;  ///< of the last step: modes and TCP for the next motion
   std::optional<MotionFault> fault;
 
@@ -139,7 +140,9 @@ struct Arm::Impl {
   template <typename Plan>
   StartResult start_path(const Transform & target, double blend_radius, Plan plan);
 
-  void ramp_speed_scaling(ControllerState & current) const;
+  void ramp_speed_scaling(ControllerState & current);
+  /// The time that passes for the active motion in this cycle.
+  TimeStep time_step(const ControllerState & current) const;
   void advance(const TimeStep & time_step);
   /// Replaces the active motion by a stop.
   void replace_with_stop(double deceleration);

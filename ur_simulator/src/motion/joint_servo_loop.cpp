@@ -1,11 +1,9 @@
 #include "motion/joint_servo_loop.hpp"
 
-#include <cmath>
-
 namespace ur_simulator {
 
 JointServoLoop::JointServoLoop(double cycle_time, const Vector6 & position)
-    : cycle_time_(cycle_time), gain_(1.0 - std::exp(-cycle_time / lag)), position_(position)
+    : cycle_time_(cycle_time), gain_(cycle_time / (cycle_time + lag(cycle_time))), position_(position)
 {
 }
 

@@ -60,11 +60,11 @@ void RealtimePacket::put_motion(const ControllerState & s)
   put(s.target.acceleration);
   put(s.target.current);
   put(s.target.torque);
-  put(s.actual.position);
+  put(s.measured.position);
   put(s.actual.velocity);
-  put(s.actual.current);
+  put(s.measured.current);
   put(s.target.current);  // joint control currents
-  put(s.actual_tcp_pose);
+  put(s.measured.tcp_pose);
   put(s.actual_tcp_speed);
   put(s.actual_tcp_force);
   put(s.target_tcp_pose);
@@ -86,7 +86,7 @@ void RealtimePacket::put_status(const ControllerState & s)
   put_zeros(6);  // internal
   put(s.tool_acceleration);
   put_zeros(6);  // internal
-  put(s.speed_scaling);
+  put(s.reported_speed_scaling());
   put(s.payload.mass * s.actual_tcp_speed.head<3>().norm());  // linear momentum norm
   put_zeros(2);                                               // internal
   put(main_voltage);                                          // main voltage

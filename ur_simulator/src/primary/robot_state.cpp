@@ -82,7 +82,7 @@ std::string robot_mode_data(const PolyscopeVersion & version, const ControllerSt
   put_u8(data, static_cast<std::uint8_t>(s.robot_mode));
   put_u8(data, s.freedrive ? teach_control : s.in_force_mode ? force_control : position_control);
   put_f64(data, s.target_speed_fraction);
-  put_f64(data, s.speed_scaling);
+  put_f64(data, s.reported_speed_scaling());
   if (cb3_since(2).is_met_by(version)) {
     put_f64(data, 1.0);  // limit of the target speed fraction
   }
@@ -96,10 +96,10 @@ std::string joint_data(const ControllerState & s)
 {
   std::string data;
   for (Eigen::Index i = 0; i < 6; ++i) {
-    put_f64(data, s.actual.position[i]);
+    put_f64(data, s.measured.position[i]);
     put_f64(data, s.target.position[i]);
     put_f64(data, s.actual.velocity[i]);
-    put_f32(data, static_cast<float>(s.actual.current[i]));
+    put_f32(data, static_cast<float>(s.measured.current[i]));
     put_f32(data, s.is_powered() ? supply_voltage : 0.0F);
     put_f32(data, static_cast<float>(s.joint_temperatures[i]));
     put_f32(data, 0.0F);  // deprecated
@@ -157,7 +157,7 @@ std::string masterboard_data(const PolyscopeVersion & version, const ControllerS
 std::string cartesian_data(const ControllerState & s)
 {
   std::string data;
-  put(data, s.actual_tcp_pose);
+  put(data, s.measured.tcp_pose);
   put(data, s.tcp_offset);
   return data;
 }

@@ -94,16 +94,16 @@ void add_motion_outputs(std::vector<OutputField> & fields)
       {"target_qdd", vector6d, {}, 0, UR_OUTPUT(s.target.acceleration)},
       {"target_current", vector6d, {}, 0, UR_OUTPUT(s.target.current)},
       {"target_moment", vector6d, {}, 0, UR_OUTPUT(s.target.torque)},
-      {"actual_q", vector6d, {}, 0, UR_OUTPUT(s.actual.position)},
+      {"actual_q", vector6d, {}, 0, UR_OUTPUT(s.measured.position)},
       {"actual_qd", vector6d, {}, 0, UR_OUTPUT(s.actual.velocity)},
-      {"actual_current", vector6d, {}, 0, UR_OUTPUT(s.actual.current)},
+      {"actual_current", vector6d, {}, 0, UR_OUTPUT(s.measured.current)},
       {"actual_current_window", vector6d, {}, 0, UR_OUTPUT(Vector6(Vector6::Constant(current_window)))},
       {"actual_current_as_torque", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.actual.torque)},
       {"joint_control_output", vector6d, {}, 0, UR_OUTPUT(s.target.current)},
       {"joint_temperatures", vector6d, {}, 0, UR_OUTPUT(s.joint_temperatures)},
       {"joint_position_deviation_ratio", double_, {v(5, 14), never}, 0, UR_OUTPUT(s.joint_deviation_ratio)},
       {"collision_detection_ratio", double_, {v(5, 15), never}, 0, UR_OUTPUT(s.collision_force_ratio)},
-      {"speed_scaling", double_, {}, 0, UR_OUTPUT(s.speed_scaling)},
+      {"speed_scaling", double_, {}, 0, UR_OUTPUT(s.reported_speed_scaling())},
       {"target_speed_fraction", double_, {}, 0, UR_OUTPUT(s.target_speed_fraction)},
       {"time_scale_source", int32, {v(5, 17), never}, 0, UR_OUTPUT(time_scale_source(s))},
   };
@@ -114,7 +114,7 @@ void add_tcp_and_payload_outputs(std::vector<OutputField> & fields)
 {
   using enum FieldType;
   const std::vector<OutputField> rows{
-      {"actual_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_pose)},
+      {"actual_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.measured.tcp_pose)},
       {"actual_TCP_speed", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_speed)},
       {"actual_TCP_force", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_force)},
       {"target_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.target_tcp_pose)},

@@ -81,6 +81,13 @@ struct JointState {
   Vector6 torque = Vector6::Zero();        ///< N m
 };
 
+/// What the sensors of the joints report.
+struct JointReadings {
+  Vector6 position = Vector6::Zero();  ///< rad
+  Vector6 current = Vector6::Zero();   ///< A
+  Vector6 tcp_pose = Vector6::Zero();  ///< from these positions
+};
+
 /// The data that a control cycle reads and writes. Used on the controller's thread only. Poses, twists and
 /// wrenches are those of the TCP in the base frame unless stated otherwise; forces are those that the
 /// environment exerts on the tool.
@@ -89,7 +96,8 @@ struct ControllerState {
   double timestamp = 0.0;  ///< simulated time since start, cycle * cycle time, s
 
   JointState target;
-  JointState actual;
+  JointState actual;       ///< without noise
+  JointReadings measured;  ///< the same with noise: what clients and programs see
   Vector6 joint_temperatures = Vector6::Constant(28.0);  ///< deg C
   std::array<std::int32_t, 6> joint_modes{};             ///< 253 RUNNING, 255 IDLE, 239 POWER_OFF, …
 
@@ -128,7 +136,7 @@ struct ControllerState {
 
   double speed_slider = 1.0;   ///< set on the pendant or over RTDE, 0..1
   double speed_scaling = 1.0;  ///< current scaling of the trajectory speed, ramps to the target fraction
-  double target_speed_fraction = 1.0;  ///< the speed slider, 0 while the program is paused
+  double target_speed_fraction = 1.0;  ///< the speed slider
 
   RobotMode robot_mode = RobotMode::power_off;
   SafetyMode safety_mode = SafetyMode::normal;
@@ -152,6 +160,11 @@ struct ControllerState {
   double actual_execution_time = 0.0;               ///< computation time of the last cycle, ms
 
   /// Bit 0 of robot_status_bits, "Is power on" (UR, "RTDE Guide").
+  /// RTDE output speed_scaling: 0 while no program runs (recordings of robots).
+  double reported_speed_scaling() const
+  {
+    return runtime_state == RuntimeState::stopped ? 0.0 : speed_scaling;
+  }
   bool is_powered() const { return (robot_status_bits & 1U) != 0; }
 };
 

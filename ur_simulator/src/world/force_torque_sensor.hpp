@@ -4,6 +4,7 @@
 #include <random>
 
 #include "common/types.hpp"
+#include "kinematics/robot_model.hpp"
 #include "state/controller_state.hpp"
 
 namespace ur_simulator {
@@ -12,7 +13,7 @@ namespace ur_simulator {
 /// inertia of the load, low-pass filter, payload compensation, zero offset.
 class ForceTorqueSensor {
  public:
-  ForceTorqueSensor(double cycle_time, std::uint64_t seed);
+  ForceTorqueSensor(const RobotModel & model, std::uint64_t seed);
 
   void zero() { zero_requested_ = true; }
   void set_noise(double force, double torque);
@@ -26,9 +27,9 @@ class ForceTorqueSensor {
   static Vector6 sensor_wrench(const ControllerState & state);
 
   double filter_gain_;
-  double force_noise_ = 0.5;
-  double torque_noise_ = 0.02;
   std::mt19937_64 random_;
+  double force_noise_;
+  double torque_noise_;
   std::normal_distribution<double> normal_;
   Vector6 filtered_ = Vector6::Zero();
   Vector6 offset_ = Vector6::Zero();

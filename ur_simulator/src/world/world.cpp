@@ -17,8 +17,8 @@ using std::numbers::pi;
 
 }  // namespace
 
-World::World(double cycle_time, std::uint64_t seed)
-    : cycle_time_(cycle_time), sensor_(cycle_time, seed), contact_detector_(cycle_time)
+World::World(const RobotModel & model, std::uint64_t seed)
+    : cycle_time_(model.cycle_time()), sensor_(model, seed), contact_detector_(cycle_time_)
 {
   pushes_.reserve(max_pushes);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/types.hpp"
+#include "kinematics/robot_model.hpp"
 #include "state/controller_state.hpp"
 #include "world/contact_detector.hpp"
 #include "world/digital_gripper.hpp"
@@ -32,7 +33,7 @@ class World {
  public:
   static constexpr std::size_t max_pushes = 32;
 
-  World(double cycle_time, std::uint64_t seed);
+  World(const RobotModel & model, std::uint64_t seed);
   ObjectList<Surface> & surfaces() { return surfaces_; }
   const ObjectList<Surface> & surfaces() const { return surfaces_; }
   ObjectList<Box> & boxes() { return boxes_; }

@@ -118,7 +118,7 @@ TEST_F(ClientInterfaceTest, RealTimeInterfaceSendsStateInEachCycle)
   EXPECT_NEAR(decode_double(second.substr(4, 8)) - decode_double(first.substr(4, 8)), 0.002, 1e-9);
   const json joints = controller.state()["actual"]["position"];
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(decode_double(second.substr(252 + 8 * i, 8)), joints[i].get<double>(), 1e-6);
+    EXPECT_NEAR(decode_double(second.substr(252 + 8 * i, 8)), joints[i].get<double>(), reading_noise);
   }
 }
 

@@ -33,9 +33,9 @@ TEST_F(PrimaryInterfaceTest, EncodesPackagesAsInClientInterfaceManual)
   const json state = controller.state();
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(decode_double(packages.at(1).substr(41 * i, 8)), state["actual"]["position"][i].get<double>(),
-                1e-6);
+                reading_noise);
     EXPECT_NEAR(decode_double(packages.at(4).substr(8 * i, 8)), state["actual_tcp_pose"][i].get<double>(),
-                1e-6);
+                reading_noise);
   }
   EXPECT_EQ(packages.at(0)[15], 7);                           // robot mode RUNNING
   EXPECT_EQ(packages.at(3)[60], 1);                           // safety mode NORMAL

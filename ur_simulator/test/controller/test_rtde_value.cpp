@@ -17,10 +17,12 @@ std::string text_of(const ControllerState & state, std::string_view name)
 TEST(RtdeValueTest, EachTypeHasItsValue)
 {
   ControllerState state;
-  state.actual.position = (Vector6() << 0.5, -1, 1.5, 2, -2.5, 3).finished();
+  state.measured.position = (Vector6() << 0.5, -1, 1.5, 2, -2.5, 3).finished();
   state.robot_mode = RobotMode::running;
   EXPECT_EQ(text_of(state, "actual_q"), "[0.5, -1, 1.5, 2, -2.5, 3]");
   EXPECT_EQ(text_of(state, "robot_mode"), "7");
+  EXPECT_EQ(text_of(state, "speed_scaling"), "0") << "no program runs";
+  state.runtime_state = RuntimeState::playing;
   EXPECT_EQ(text_of(state, "speed_scaling"), "1");
   EXPECT_EQ(rtde_value(state, version, "actual_digital_output_bits")->type(), urscript::Type::integer);
   EXPECT_EQ(rtde_value(state, version, "output_bit_register_64")->type(), urscript::Type::boolean);

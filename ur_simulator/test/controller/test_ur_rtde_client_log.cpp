@@ -23,9 +23,7 @@ Lines log_of_session()
       ur_rtde::RTDEControlInterface control(controller.address(), -1.0,
                                             ur_rtde::RTDEControlInterface::FLAGS_DEFAULT, 50002, -1);
       ur_rtde::RTDEReceiveInterface receive(controller.address());
-      std::vector<double> target = receive.getActualQ();
-      target[0] += 0.1;
-      EXPECT_TRUE(control.moveJ(target, 1.0, 2.0));
+      EXPECT_TRUE(control.moveJ({0.1, -1.57, 1.57, -1.57, -1.57, 0.0}, 1.0, 2.0));
       control.stopScript();
       EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
     }

@@ -200,7 +200,7 @@ TEST_F(UrRtdeForceTest, ReadsMassMatrixJacobianAndJointHistory)
   EXPECT_EQ(control.getJacobian().size(), 36u);
   const Vector joints = controller.state()["actual"]["position"].get<Vector>();
   EXPECT_TRUE(poll_until(controller, [&] {
-    return std::abs(control.getActualJointPositionsHistory(10).at(1) - joints[1]) < 1e-6;
+    return std::abs(control.getActualJointPositionsHistory(10).at(1) - joints[1]) < reading_noise;
   }));
   EXPECT_EQ(control.getTargetWaypoint().size(), 6u);
 }

@@ -18,9 +18,7 @@ TEST(JointServoLoopTest, FollowsTheTargetWithAConstantLag)
   ASSERT_TRUE(fixture.arm.speed_joint(six(0.5, 0, 0, 0, 0, 0), 5.0, 0.0));
   fixture.run(1.0);
   const double behind = fixture.state.target.position[0] - fixture.state.actual.position[0];
-  // Lag of the sampled system: the geometric series of the remaining error of each step.
-  const double expected = 0.5 * fixture.dt / (std::exp(fixture.dt / JointServoLoop::lag) - 1.0);
-  EXPECT_NEAR(behind, expected, 1e-9);
+  EXPECT_NEAR(behind, 0.5 * JointServoLoop::lag(fixture.dt), 1e-9);
   EXPECT_NEAR(fixture.state.actual.velocity[0], 0.5, 1e-9);
 }
 

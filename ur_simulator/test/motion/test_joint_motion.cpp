@@ -87,6 +87,27 @@ TEST(MoveJTest, TakesTwiceTheTimeWithTheSpeedSliderAtOneHalf)
   EXPECT_NEAR(fixture.max_velocity[0], 0.525, 1e-6);
 }
 
+TEST(ProgramStartTest, TimeOfTheFirstPathStartsSlowly)
+{
+  ArmFixture fixture;
+  fixture.arm.begin_program();
+  const auto motion = fixture.arm.move_joint(near_home(fixture, six(1.0, 0, 0, 0, 0, 0)), {0.8, 0.6});
+  ASSERT_TRUE(motion);
+  fixture.run(0.1);
+  EXPECT_NEAR(fixture.state.target.velocity[0], 0.8 * std::pow(0.1, 3) / (2.0 * 0.16 * 0.16), 1e-3);
+  EXPECT_NEAR(0.1 + fixture.until_finished(*motion), 0.08 + 1.0 / 0.6 + 0.6 / 0.8, 2.0 * fixture.dt);
+}
+
+TEST(ProgramStartTest, ALaterPathStartsAtFullScaling)
+{
+  ArmFixture fixture;
+  fixture.arm.begin_program();
+  fixture.run(0.2);
+  ASSERT_TRUE(fixture.arm.move_joint(near_home(fixture, six(1.0, 0, 0, 0, 0, 0)), {0.8, 0.6}));
+  fixture.run(0.1);
+  EXPECT_NEAR(fixture.state.target.velocity[0], 0.08, 2e-3);
+}
+
 TEST(SpeedSliderTest, ScalesSpeedjInVelocityAndTime)
 {
   ArmFixture fixture;
@@ -143,6 +164,15 @@ TEST(SpeedSliderTest, ChangeDuringAMotionIsGradual)
   fixture.until_finished(*motion);
   EXPECT_LT(fixture.max_acceleration, 2.5);
   EXPECT_NEAR(fixture.state.target.position[0], 2.0, 1e-12);
+}
+
+TEST(PauseTest, LeavesTheSpeedSlider)
+{
+  ArmFixture fixture;
+  fixture.arm.pause();
+  fixture.run(1.0);
+  EXPECT_EQ(fixture.state.speed_scaling, 0.0);
+  EXPECT_EQ(fixture.state.target_speed_fraction, 1.0);
 }
 
 TEST(PauseTest, StopsTheMotionUntilResume)

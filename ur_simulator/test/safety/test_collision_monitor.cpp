@@ -37,7 +37,7 @@ struct MovedArm {
     return std::nullopt;
   }
   const RobotModel & model;
-  World world{0.002, 1};
+  World world{model, 1};
   ControllerState state;
   CollisionMonitor monitor;
 };

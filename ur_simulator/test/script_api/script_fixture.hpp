@@ -23,7 +23,7 @@ class ScriptFixture {
   ScriptFixture()
       : model(find_robot_model("ur10e")->get()),
         arm(model, cycle_time, default_position(model)),
-        world(cycle_time, 1)
+        world(model, 1)
   {
     state.robot_mode = RobotMode::running;
     world.set_sensor_noise(0.0, 0.0);

@@ -11,7 +11,7 @@ struct RobotFixture : CyclicFixture {
   explicit RobotFixture(const char * name = "ur10e", const SafetyTimes & times = {}, bool running = true)
       : CyclicFixture(name),
         arm(model, dt, default_position(model)),
-        world(dt, 1),
+        world(model, 1),
         safety(model, dt, {}, times)
   {
     world.set_sensor_noise(0.0, 0.0);

@@ -100,7 +100,7 @@ TEST(ForceTorqueSensorTest, NoiseHasTheGivenDeviationAndDependsOnTheSeed)
 {
   const auto deviation = [](std::uint64_t seed, double & first) {
     ControllerState state;
-    World world(0.002, seed);
+    World world(testing::model_named("ur10e"), seed);
     world.set_sensor_noise(1.0, 0.1);
     double sum = 0.0;
     constexpr int count = 20000;

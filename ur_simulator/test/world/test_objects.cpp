@@ -98,7 +98,7 @@ TEST(SpringTest, ActsOnTheTool)
 
 TEST(ObjectsTest, ErrorNamesFieldAndLimit)
 {
-  World world(0.002, 1);
+  World world(testing::model_named("ur10e"), 1);
   Box box;
   box.size.y() = 0.0;
   try {
@@ -115,7 +115,7 @@ TEST(ObjectsTest, ErrorNamesFieldAndLimit)
 
 TEST(ObjectsTest, IdentifiersStayUnique)
 {
-  World world(0.002, 1);
+  World world(testing::model_named("ur10e"), 1);
   const auto first = world.boxes().add({});
   ASSERT_TRUE(world.boxes().remove(first));
   EXPECT_FALSE(world.boxes().remove(first));

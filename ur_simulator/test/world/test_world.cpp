@@ -21,7 +21,7 @@ double felt_stiffness(const RobotFixture & fixture, const Surface & surface)
 TEST(SurfaceTest, ForceIsStiffnessTimesPenetrationForAStiffArm)
 {
   ControllerState state;  // no compliance
-  World world(0.002, 1);
+  World world(testing::model_named("ur10e"), 1);
   Surface table;
   table.point.z() = 0.001;
   world.surfaces().add(table);

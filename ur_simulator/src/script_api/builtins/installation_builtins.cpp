@@ -89,6 +89,7 @@ Outcome set_tcp(RobotContext & robot, Arguments arguments)
   state.tcp_offset = pose;
   // The program reads the pose of the new TCP in this cycle already.
   state.actual_tcp_pose = tcp_pose(robot.access.model, state.actual.position, pose);
+  state.measured.tcp_pose = tcp_pose(robot.access.model, state.measured.position, pose);
   state.target_tcp_pose = tcp_pose(robot.access.model, state.target.position, pose);
   return Value();
 }

@@ -64,7 +64,7 @@ Outcome has_inverse(RobotContext & robot, Arguments arguments)
 Outcome forward(RobotContext & robot, Arguments arguments)
 {
   ArgumentReader reader(arguments);
-  const Vector6 q = reader.given(0) ? reader.vector6(0, "q") : robot.state().actual.position;
+  const Vector6 q = reader.given(0) ? reader.vector6(0, "q") : robot.state().measured.position;
   const Vector6 tcp = reader.given(1) ? reader.pose(1, "tcp") : robot.state().tcp_offset;
   return reader ? Outcome(Value::pose(tcp_pose(robot.access.model, q, tcp))) : reader.failure();
 }

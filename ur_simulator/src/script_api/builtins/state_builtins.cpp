@@ -12,13 +12,14 @@ struct StateGetter {
 };
 
 constexpr StateGetter state_getters[] = {
-    {"get_actual_joint_positions", [](const ControllerState & s) { return Value::list(s.actual.position); }},
+    {"get_actual_joint_positions",
+     [](const ControllerState & s) { return Value::list(s.measured.position); }},
     // A former name, which UR's External Control program uses.
-    {"get_joint_positions", [](const ControllerState & s) { return Value::list(s.actual.position); }},
+    {"get_joint_positions", [](const ControllerState & s) { return Value::list(s.measured.position); }},
     {"get_actual_joint_accelerations",
      [](const ControllerState & s) { return Value::list(s.actual.acceleration); }},
     {"get_actual_joint_speeds", [](const ControllerState & s) { return Value::list(s.actual.velocity); }},
-    {"get_actual_tcp_pose", [](const ControllerState & s) { return Value::pose(s.actual_tcp_pose); }},
+    {"get_actual_tcp_pose", [](const ControllerState & s) { return Value::pose(s.measured.tcp_pose); }},
     {"get_actual_tcp_speed", [](const ControllerState & s) { return Value::list(s.actual_tcp_speed); }},
     {"get_target_joint_positions", [](const ControllerState & s) { return Value::list(s.target.position); }},
     {"get_target_joint_speeds", [](const ControllerState & s) { return Value::list(s.target.velocity); }},
@@ -56,7 +57,7 @@ Outcome history(const RobotContext & robot, Arguments arguments)
     return reader.failure();
   }
   if (steps == 0) {
-    return Value::list(robot.state().actual.position);
+    return Value::list(robot.state().measured.position);
   }
   const JointHistory * history = robot.access.history;
   const auto position =

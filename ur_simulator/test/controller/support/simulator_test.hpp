@@ -9,6 +9,9 @@
 
 namespace ur_simulator::testing {
 
+/// rad, m: more than the noise of the readings of joints and TCP poses.
+constexpr double reading_noise = 3e-4;
+
 using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;

@@ -1,0 +1,65 @@
+"""Reads recordings of robots that other programs made."""
+
+import pathlib
+from dataclasses import dataclass
+from typing import Dict, Optional, Tuple
+
+import numpy as np
+from ur_ros_rtde_cli.errors import CliError
+from ur_ros_rtde_cli.recording import Recording
+
+ACTUAL, TARGET, ACTUAL_SPEED, TARGET_SPEED = "actual_q", "target_q", "actual_qd", "target_qd"
+REST_SPEED = 1e-3  # rad/s of a target
+SETTLED = 0.3  # s at rest before an arm counts as settled
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Rows of a recording from the last one at rest to the first one at rest again."""
+
+    begin: int
+    end: int
+
+
+def read(path: pathlib.Path, names: Dict[str, str], rate: Optional[float]) -> Recording:
+    """Reads a recording. `names`: the column, or its name without _0 to _5, of an output with another name. `rate`, in Hz, replaces
+    the time stamps."""
+    recording = Recording.read(path, names, rate)
+    for name in (ACTUAL, TARGET):
+        if name not in recording.outputs or recording.outputs[name].shape[1] != 6:
+            raise CliError(f"{path} has no {name}_0 to {name}_5: name the columns with --column {name}=COLUMN. It has: "
+                           f"{', '.join(recording.outputs)}")
+    if TARGET_SPEED not in recording.outputs:
+        recording.outputs[TARGET_SPEED] = np.gradient(recording.outputs[TARGET], recording.times, axis=0)
+    return recording
+
+
+def cut(recording: Recording, begin: int, end: int) -> Recording:
+    """Returns the rows from `begin` to before `end`, with times from 0."""
+    rows = slice(max(begin, 0), end)
+    times = recording.times[rows]
+    return Recording(recording.name, times - times[0], {name: values[rows] for name, values in recording.outputs.items()}, [])
+
+
+def period(recording: Recording) -> float:
+    return float(np.median(np.diff(recording.times)))
+
+
+def _moves(recording: Recording) -> np.ndarray:
+    return np.abs(recording.outputs[TARGET_SPEED]).max(axis=1) > REST_SPEED
+
+
+def motions(recording: Recording) -> Tuple[Motion, ...]:
+    """Returns the motions that begin and end within the recording; if it has no rest, all of it is one."""
+    edges = np.diff(_moves(recording).astype(int))
+    begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) + 1
+    if len(begins) and len(ends) and ends[0] <= begins[0]:
+        ends = ends[1:]
+    complete = tuple(Motion(int(begin), int(end)) for begin, end in zip(begins, ends))
+    return complete or ((Motion(0, len(recording.times) - 1),) if _moves(recording).all() else ())
+
+
+def settled(recording: Recording) -> np.ndarray:
+    """Returns the rows before which the arm has been at rest for SETTLED s."""
+    moved_at = np.where(_moves(recording), recording.times, -np.inf)
+    return recording.times - np.maximum.accumulate(np.concatenate(([recording.times[0] - SETTLED], moved_at)))[1:] >= SETTLED
