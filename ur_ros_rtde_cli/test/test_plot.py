@@ -21,6 +21,22 @@ def file(tmp_path):
     return path
 
 
+def test_reads_a_file_of_the_rtde_client_library(tmp_path):
+    path = tmp_path / "robot_data.csv"
+    path.write_text("timestamp actual_qd_0 actual_qd_1\n5.0 1 2\n5.002 3 4\n\n")
+    recording = Recording.read(path)
+    np.testing.assert_allclose(recording.outputs["actual_qd"], [[1, 2], [3, 4]])
+    np.testing.assert_allclose(recording.times, [0.0, 0.002], atol=1e-9)
+
+
+def test_reads_columns_with_other_names_and_a_given_rate(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("qd_0, qd_1, speed\n1, 2, 3\n4, 5, 6\n")
+    recording = Recording.read(path, {"actual_qd": "qd", "speed_scaling": "speed"}, 125.0)
+    assert list(recording.outputs) == ["actual_qd", "speed_scaling"] and list(recording.times) == [0.0, 0.008]
+    np.testing.assert_allclose(recording.outputs["actual_qd"], [[1, 2], [4, 5]])
+
+
 def test_reads_vectors_numbers_and_events(file):
     recording = Recording.read(file)
     assert list(recording.outputs) == ["actual_q", "robot_mode"] and recording.outputs["actual_q"].shape == (5, 6)

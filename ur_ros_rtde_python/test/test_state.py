@@ -9,6 +9,7 @@ from ur_ros_rtde import NoDriver, Robot, RobotError, read_recording
 
 PLUGINS = "plugins:=[move_j,stop]"
 AWAY = [0.5, *HOME[1:]]
+NOISE = 2e-4  # rad, more than that of the joint positions
 
 
 def test_the_attributes_are_those_of_the_robot(arm, simulator):
@@ -37,11 +38,11 @@ def test_a_stream_has_all_fields_of_each_cycle_and_ends(arm):
     times = np.array([sample.time for sample in samples])
     angles = np.array([sample.joint_positions[0] for sample in samples])
     assert len(samples) > 50 and np.all(np.diff(times) > 0.0) and times[-1] - times[0] <= 0.5
-    assert np.all(np.diff(angles) >= -1e-6) and angles[-1] > angles[0]
+    assert np.all(np.diff(angles) >= -NOISE) and angles[-1] > angles[0]
     assert samples[0].joint_velocities.shape == (6,) and samples[0].tcp_pose.shape == (7,)
     # The joint and the TCP turn around the same axis, so they belong to the same cycle.
     turned = np.unwrap([np.arctan2(sample.tcp_pose[1], sample.tcp_pose[0]) for sample in samples])
-    assert np.allclose(turned - turned[0], angles - angles[0], atol=1e-5)
+    assert np.allclose(turned - turned[0], angles - angles[0], atol=NOISE)
 
 
 def test_a_stream_can_be_left_early(arm):

@@ -6,6 +6,7 @@ import gc
 import itertools
 import sys
 import threading
+import time
 
 import msgspec
 import numpy as np
@@ -29,6 +30,7 @@ from ur_ros_rtde_msgs.action import MoveJ
 ACTIONS = 40  # in the ROS graph
 UPDATES, ROUNDS = 200, 5
 LARGEST_GROWTH = 100.0  # bytes per update, in the round with the smallest one: objects that come and go
+QUIET = 0.1  # s
 SMALL_OBJECT = 64  # bytes, about, of those that Python does not allocate with malloc()
 CAMERA = {"type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (0.0, 0.0, 1.0), "fov": 1.0, "near": 0.1, "far": 100.0,
           "image_height": 800, "image_width": 1000, "look_at": (0.0, 0.0, 0.0), "up_direction": (0.0, 0.0, 1.0)}
@@ -82,24 +84,34 @@ def viewer(server, monkeypatch):
     nodes.close()
 
 
-def read_until_closed(connection):
-    with contextlib.suppress(ConnectionClosed):
-        while True:
-            connection.recv()
-
-
-@contextlib.contextmanager
-def page(server, reads):
+class Page:
     """The connection of a page."""
-    with connect(f"ws://127.0.0.1:{server.get_port()}", subprotocols=[f"viser-v{viser.__version__}"], compression=None,
-                 max_size=None) as connection:
-        connection.send(msgspec.msgpack.encode(CAMERA))
-        thread = threading.Thread(target=read_until_closed, args=(connection,))
+
+    def __init__(self, server, reads):
+        self._reads, self._received = reads, 0
+        self._connection = connect(f"ws://127.0.0.1:{server.get_port()}", subprotocols=[f"viser-v{viser.__version__}"], compression=None,
+                                   max_size=None)
+        self._connection.send(msgspec.msgpack.encode(CAMERA))
+        self._thread = threading.Thread(target=self._read_until_closed)
         if reads:
-            thread.start()
-        yield
-    if reads:
-        thread.join()
+            self._thread.start()
+
+    def _read_until_closed(self):
+        with contextlib.suppress(ConnectionClosed):
+            while True:
+                self._connection.recv()
+                self._received += 1
+
+    def has_received_everything(self):
+        """Returns whether nothing arrives for QUIET s: messages on their way are memory, too."""
+        before = self._received
+        time.sleep(QUIET)
+        return self._received == before
+
+    def close(self):
+        self._connection.close()
+        if self._reads:
+            self._thread.join()
 
 
 def test_goals_of_one_action_need_one_subscription(viewer, actions):
@@ -119,20 +131,26 @@ def test_goals_of_one_action_need_one_subscription(viewer, actions):
 
 @pytest.mark.parametrize("kind", ["no page", "a page", "a page that does not read"])
 def test_memory_does_not_grow_with_the_updates(server, viewer, actions, kind):
-    times = itertools.count()
+    instants = itertools.count()
 
     def update(count):
         for _ in range(count):
-            move(viewer.robots[0].state, 0.1 * next(times))
+            move(viewer.robots[0].state, 0.1 * next(instants))
             viewer.update()
             viewer.nodes.spin_once(0.0)
 
+    def settle():
+        if page is not None:
+            until(page.has_received_everything, "the messages on their way")
+
     def growth():
+        settle()
         before = allocated()
         update(UPDATES)
+        settle()
         return (allocated() - before) / UPDATES
 
-    with page(server, kind == "a page") if kind != "no page" else contextlib.nullcontext():
+    with contextlib.closing(Page(server, kind == "a page")) if kind != "no page" else contextlib.nullcontext() as page:
         until(lambda: update(UPDATES // 10) or len(viewer.control._robots[0].action_types) >= ACTIONS, "the actions")
         update(2 * UPDATES)
         grown = [growth() for _ in range(ROUNDS)]

@@ -35,7 +35,7 @@ TimeStep Arm::Impl::time_step(const ControllerState & current) const
 
 void Arm::begin_program()
 {
-  impl_->start_scaling = 0.0;
+  impl_->start_scaling = impl_->setpoint.velocity.isZero(0.0) ? 0.0 : 1.0;
 }
 
 void Arm::Impl::replace_with_stop(double deceleration)

@@ -99,7 +99,7 @@ class Arm {
   PathOffset & path_offset();
   /// The path of the program continues from the current position; a motion must be stopped afterwards.
   void disable_path_offset();
-  /// The time of the first path of a program starts slowly.
+  /// The time of paths starts slowly now, if the arm is at rest.
   void begin_program();
   /// Ends force mode, freedrive and path offset and resets their settings, as the end of a program does.
   void end_program();

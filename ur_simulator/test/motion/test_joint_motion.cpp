@@ -108,6 +108,20 @@ TEST(ProgramStartTest, ALaterPathStartsAtFullScaling)
   EXPECT_NEAR(fixture.state.target.velocity[0], 0.08, 2e-3);
 }
 
+TEST(ProgramStartTest, APathThatReplacesAStopKeepsItsVelocity)
+{
+  ArmFixture fixture;
+  ASSERT_TRUE(fixture.arm.move_joint(near_home(fixture, six(1.0, 0, 0, 0, 0, 0)), {1.4, 1.0}));
+  fixture.run(0.5);
+  fixture.arm.stop_all(2.0);
+  fixture.run(0.1);
+  fixture.reset_maxima();
+  fixture.arm.begin_program();
+  ASSERT_TRUE(fixture.arm.move_joint(near_home(fixture, six(0.0, 0.5, 0, 0, 0, 0)), {1.4, 1.0}));
+  fixture.run(0.5);
+  EXPECT_LT(fixture.max_acceleration, 10.0) << "no jump of the velocity";
+}
+
 TEST(SpeedSliderTest, ScalesSpeedjInVelocityAndTime)
 {
   ArmFixture fixture;
