@@ -56,6 +56,14 @@ def _largest_error(recording: Recording, _motion: Motion) -> float:
     return float(np.abs(recording.outputs[ACTUAL] - recording.outputs[TARGET]).max())
 
 
+def _rms_error(recording: Recording, _motion: Motion) -> Optional[float]:
+    """Of the joints while they move, rad."""
+    moving = np.abs(recording.outputs[TARGET_SPEED]) > TRACKED_SPEED
+    if moving.sum() < LEAST_ROWS:
+        return None
+    return _rms((recording.outputs[ACTUAL] - recording.outputs[TARGET])[moving])
+
+
 def _settling_time(recording: Recording, motion: Motion) -> Optional[float]:
     """Returns the time from the end of the target's motion until the joints stay within SETTLED_ERROR of where they end, s."""
     joints = recording.outputs[ACTUAL][motion.end:]
@@ -67,7 +75,8 @@ def _settling_time(recording: Recording, motion: Motion) -> Optional[float]:
 
 MOTION_FIGURES: Tuple[Tuple[str, str, Callable[[Recording, Motion], Optional[float]]], ...] = (
     ("duration of the target", "s", _duration), ("largest speed of a joint", "rad/s", _largest_speed),
-    ("lag of the joints", "ms", _lag), ("largest error of a joint", "rad", _largest_error), ("settling time", "s", _settling_time))
+    ("lag of the joints", "ms", _lag), ("rms error of moving joints", "rad", _rms_error),
+    ("largest error of a joint", "rad", _largest_error), ("settling time", "s", _settling_time))
 
 
 def motion_rows(robot: Recording, motion: Motion, simulator: Recording) -> List[Row]:

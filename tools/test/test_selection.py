@@ -123,6 +123,12 @@ def test_an_unknown_name_is_rejected_with_similar_ones(root):
         assert f'"{word}"' in str(failure.value) and near in str(failure.value)
 
 
+def test_a_package_without_tests_is_named(root):
+    with pytest.raises(console.Failure) as failure:
+        named(root, "messages")
+    assert str(failure.value) == "the package messages has no tests"
+
+
 def test_the_tests_of_this_checkout_have_names():
     found = selection.sources(packages.discover(ROOT))
     assert len({case for source in found for case in source.cases}) > 200

@@ -57,7 +57,8 @@ def test_the_dashboard_command_shows_a_text_and_queries_the_mode(workspace):
 
 def test_the_extension_runs_on_the_controller(workspace):
     text = output(workspace, "ur call twist")
-    assert "success: true" in text and re.search(r"position: 0\.3\b", text), text
+    position = re.search(r"^ *position: ([-.0-9]+)$", text, re.MULTILINE)
+    assert "success: true" in text and position and float(position[1]) == pytest.approx(0.3, abs=1e-3), text
 
 
 def test_the_written_tests_pass(workspace):

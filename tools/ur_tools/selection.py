@@ -118,6 +118,8 @@ def by_name(words: List[str], packages: Dict[str, Package], root: pathlib.Path =
 
 
 def _unknown(word: str, known: List[Source], packages: Iterable[str]) -> str:
+    if word in packages:
+        return f"the package {word} has no tests"
     names: Dict[str, str] = {name.lower(): name for source in known for name in _names(source)}
     names.update({name.split(".")[0].lower(): name.split(".")[0] for source in known for name in source.cases})
     names.update({name.lower(): name for name in packages})
