@@ -4,7 +4,7 @@ import argparse
 import os
 import pathlib
 import sys
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 from moves import Move, recognize
 from replay import record
@@ -21,7 +21,9 @@ from ur_simulator.robot import SimulatedRobot, SimulatorError
 
 MARGIN = 0.5  # s of rest of the recording around a motion
 DRAWN = (TARGET, TARGET_SPEED, ACTUAL, "actual_qd", "actual_current", "actual_TCP_force")
+LARGEST_CALIBRATION = 0.01  # m, by which a calibrated arm deviates from the nominal kinematics
 LONGEST = 60.0  # s of a motion
+STANDSTILL = "  sleep(1.0)\n"
 OVERHEAD = 2.0  # s of the simulator for each motion
 
 
@@ -69,7 +71,7 @@ def _columns(pairs: List[str]) -> Dict[str, str]:
 def _announce(recording: Recording, found: Sequence[Motion]) -> None:
     seconds = sum(recording.times[motion.end] - recording.times[motion.begin] + OVERHEAD for motion in found)
     print(f"{recording.name}: {len(recording.times)} rows, {recording.times[-1]:.2f} s, {1.0 / period(recording):.0f} Hz, "
-          f"{len(found)} motions; the simulator needs about {seconds:.0f} s")
+          f"motions: {len(found)}; the simulator needs about {seconds:.0f} s")
     print(f"  {'':34} {'robot':>10} {'simulator':>10} {'ratio':>8}")
 
 
@@ -78,19 +80,27 @@ def run(options: argparse.Namespace) -> None:
     origins = nominal_origins(find_model(options.model))
     found = motions(recording)
     _announce(recording, found)
-    first: Optional[Recording] = None
+    replays: List[Recording] = []
+
+    def replay(row: int, script: str) -> Recording:
+        joints = recording.outputs[TARGET][row]
+        replays.append(record(simulator, joints, script, list(recording.outputs), 1.0 / period(recording), LONGEST))
+        return replays[-1]
+
     with SimulatedRobot(options.model) as simulator:
         for number, motion in enumerate(found, start=1):
             around, within = _around(recording, motion)
             move = recognize(around, within, origins)
-            replayed = record(simulator, recording.outputs[TARGET][motion.begin], move.script, list(recording.outputs),
-                              1.0 / period(recording), LONGEST)
+            replayed = replay(motion.begin, move.script)
             rows = [_target_row(around, replayed)] if isinstance(move, Move) else []
             _print(f"motion {number} at {recording.times[motion.begin]:.2f} s: {move}", rows + motion_rows(around, within, replayed))
-            if first is None and options.output:
+            if number == 1 and options.output:
                 _figure(options.output, around, replayed)
-            first = first or replayed
-    _print("whole recording", time_rows(recording, first) + pose_row(recording, first, origins) + noise_rows(recording, first))
+        first = replays[0] if replays else replay(0, STANDSTILL)
+    poses = pose_row(recording, first, origins)
+    _print("whole recording", time_rows(recording, first) + poses + noise_rows(recording, first))
+    if any((row.robot or 0.0) > LARGEST_CALIBRATION for row in poses):
+        print(f"\nThe TCP poses are not those of a {options.model}: is it another model, or did the TCP change?")
 
 
 def main(arguments: List[str]) -> int:

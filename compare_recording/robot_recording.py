@@ -29,6 +29,8 @@ def read(path: pathlib.Path, names: Dict[str, str], rate: Optional[float]) -> Re
         if name not in recording.outputs or recording.outputs[name].shape[1] != 6:
             raise CliError(f"{path} has no {name}_0 to {name}_5: name the columns with --column {name}=COLUMN. It has: "
                            f"{', '.join(recording.outputs)}")
+    if period(recording) <= 0.0:
+        raise CliError(f"{path} has time stamps that do not increase from row to row: give the rows per second with --rate")
     if TARGET_SPEED not in recording.outputs:
         recording.outputs[TARGET_SPEED] = np.gradient(recording.outputs[TARGET], recording.times, axis=0)
     return recording

@@ -94,13 +94,13 @@ def noise(recording: Recording, name: str) -> Optional[np.ndarray]:
     return np.sqrt(np.mean(np.diff(recording.outputs[name], axis=0)[pairs] ** 2, axis=0) / 2.0)
 
 
-def noise_rows(robot: Recording, simulator: Optional[Recording]) -> List[Row]:
+def noise_rows(robot: Recording, simulator: Recording) -> List[Row]:
     rows = []
     for name in NOISY:
         found = noise(robot, name)
         if found is None:
             continue
-        simulated = None if simulator is None else noise(simulator, name)
+        simulated = noise(simulator, name)
         units = (labels(name, len(found))[0].split(", ") * 2)[:2]
         for part, unit, text in ((slice(0, 3), units[0], "0-2"), (slice(3, 6), units[1], "3-5"))[:len(found) // 3]:
             rows.append(Row(f"noise {name} {text}", unit, _rms(found[part]), None if simulated is None else _rms(simulated[part])))
@@ -111,20 +111,19 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def time_rows(robot: Recording, simulator: Optional[Recording]) -> List[Row]:
+def time_rows(robot: Recording, simulator: Recording) -> List[Row]:
     def jitter(recording: Recording) -> float:
         return float(np.std(np.diff(recording.times)))
 
     figures: Dict[str, Callable[[Recording], float]] = {"period": period, "standard deviation of the period": jitter}
-    return [Row(name, "s", figure(robot), None if simulator is None else figure(simulator)) for name, figure in figures.items()]
+    return [Row(name, "s", figure(robot), figure(simulator)) for name, figure in figures.items()]
 
 
-def pose_row(robot: Recording, simulator: Optional[Recording], origins: Sequence[Origin]) -> List[Row]:
+def pose_row(robot: Recording, simulator: Recording, origins: Sequence[Origin]) -> List[Row]:
     """How far the TCP strays from its place at the flange according to the nominal kinematics: the calibration of the arm."""
     if TCP_POSE not in robot.outputs:
         return []
-    simulated = None if simulator is None else _stray(simulator, origins)
-    return [Row("TCP pose off the nominal kinematics", "m", _stray(robot, origins), simulated)]
+    return [Row("TCP pose off the nominal kinematics", "m", _stray(robot, origins), _stray(simulator, origins))]
 
 
 def _stray(recording: Recording, origins: Sequence[Origin]) -> float:

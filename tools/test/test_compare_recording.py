@@ -111,6 +111,20 @@ def test_another_motion_is_followed_by_servoj_from_a_file_with_other_names(tmp_p
     assert 0.7 < simulator / robot < 1.3
 
 
+def test_the_noise_of_a_standstill_is_compared(tmp_path):
+    code, printed = compare(write(tmp_path / "rest.csv", np.repeat(HOME[None], 200, axis=0)), "--model", "ur5e")
+    assert code == 0 and "motions: 0" in printed, printed
+    robot, simulator = figures(printed, "noise actual_q 0-2")
+    assert 1 / 1.5 < simulator / robot < 1.5
+
+
+def test_time_stamps_that_do_not_increase_are_rejected_with_the_remedy(tmp_path):
+    file = write(tmp_path / "whole_seconds.csv", movej())
+    file.write_text(re.sub(r"^(\d+)\.\d+", r"\1", file.read_text(), flags=re.MULTILINE))
+    code, printed = compare(file, "--model", "ur5e")
+    assert code == 1 and "time stamps that do not increase from row to row: give the rows per second with --rate" in printed
+
+
 @pytest.mark.parametrize("arguments, text", [
     ((), "has no target_q_0 to target_q_5: name the columns with --column target_q=COLUMN. It has: tq, actual_q"),
     (("--column", "target_q"), "--column target_q: write OUTPUT=COLUMN, for example target_q=tq"),
