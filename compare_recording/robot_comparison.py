@@ -4,11 +4,11 @@ import argparse
 import os
 import pathlib
 import sys
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Sequence
 
 from moves import Move, recognize
 from replay import record
-from robot_recording import ACTUAL, TARGET, TARGET_SPEED, Motion, cut, motions, period, read
+from robot_recording import ACTUAL, TARGET, TARGET_SPEED, Motion, motions, period, read, with_rest
 from rows import Row, motion_rows, noise_rows, pose_row, time_rows
 from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.recording import Recording
@@ -19,7 +19,6 @@ from ur_ros_rtde_description.kinematics import nominal_origins
 from ur_ros_rtde_description.models import find_model
 from ur_simulator.robot import SimulatedRobot, SimulatorError
 
-MARGIN = 0.5  # s of rest of the recording around a motion
 DRAWN = (TARGET, TARGET_SPEED, ACTUAL, "actual_qd", "actual_current", "actual_TCP_force")
 LARGEST_CALIBRATION = 0.01  # m, by which a calibrated arm deviates from the nominal kinematics
 LONGEST = 60.0  # s of a motion
@@ -35,13 +34,6 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("--rate", type=float)
     parser.add_argument("--output", type=pathlib.Path)
     return parser.parse_args(arguments)
-
-
-def _around(recording: Recording, motion: Motion) -> Tuple[Recording, Motion]:
-    """Returns the rows around a motion, and the motion in them."""
-    margin = round(MARGIN / period(recording))
-    begin = max(motion.begin - margin, 0)
-    return cut(recording, begin, motion.end + margin), Motion(motion.begin - begin, motion.end - begin)
 
 
 def _target_row(robot: Recording, simulator: Recording) -> Row:
@@ -89,7 +81,7 @@ def run(options: argparse.Namespace) -> None:
 
     with SimulatedRobot(options.model) as simulator:
         for number, motion in enumerate(found, start=1):
-            around, within = _around(recording, motion)
+            around, within = with_rest(recording, motion)
             move = recognize(around, within, origins)
             replayed = replay(motion.begin, move.script)
             rows = [_target_row(around, replayed)] if isinstance(move, Move) else []

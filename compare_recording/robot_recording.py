@@ -10,6 +10,7 @@ from ur_ros_rtde_cli.recording import Recording
 
 ACTUAL, TARGET, ACTUAL_SPEED, TARGET_SPEED = "actual_q", "target_q", "actual_qd", "target_qd"
 REST_SPEED = 1e-3  # rad/s of a target
+REST = 0.5  # s of rest that is compared with a motion
 SETTLED = 0.3  # s at rest before an arm counts as settled
 
 
@@ -36,13 +37,6 @@ def read(path: pathlib.Path, names: Dict[str, str], rate: Optional[float]) -> Re
     return recording
 
 
-def cut(recording: Recording, begin: int, end: int) -> Recording:
-    """Returns the rows from `begin` to before `end`, with times from 0."""
-    rows = slice(max(begin, 0), end)
-    times = recording.times[rows]
-    return Recording(recording.name, times - times[0], {name: values[rows] for name, values in recording.outputs.items()}, [])
-
-
 def period(recording: Recording) -> float:
     return float(np.median(np.diff(recording.times)))
 
@@ -59,6 +53,20 @@ def motions(recording: Recording) -> Tuple[Motion, ...]:
         ends = ends[1:]
     complete = tuple(Motion(int(begin), int(end)) for begin, end in zip(begins, ends))
     return complete or ((Motion(0, len(recording.times) - 1),) if _moves(recording).all() else ())
+
+
+def with_rest(recording: Recording, motion: Motion) -> Tuple[Recording, Motion]:
+    """Returns the rows of a motion and of at most REST s of rest before and after it, with times from 0, and the motion in them."""
+    moves, count = _moves(recording), round(REST / period(recording))
+    begin, end = motion.begin, motion.end
+    while begin > max(motion.begin - count, 0) and not moves[begin - 1]:
+        begin -= 1
+    while end < min(motion.end + count, len(moves) - 1) and not moves[end + 1]:
+        end += 1
+    rows = slice(begin, end + 1)
+    times = recording.times[rows] - recording.times[begin]
+    outputs = {name: values[rows] for name, values in recording.outputs.items()}
+    return Recording(recording.name, times, outputs, []), Motion(motion.begin - begin, motion.end - begin)
 
 
 def settled(recording: Recording) -> np.ndarray:

@@ -28,6 +28,12 @@ def wait_for_protective_stop(simulator):
     wait_for(lambda: simulator.state()["safety_mode"] == "PROTECTIVE_STOP", 15.0, "the protective stop")
 
 
+def power_off(robot, simulator):
+    """Returns when the driver knows it: until then, the robot is ready for it."""
+    simulator.control("power", to="off")
+    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 15.0, "the driver to detect the power off")
+
+
 def test_make_ready_returns_at_once_if_the_robot_is_ready(robot):
     _, states = make_ready(robot)
     assert states == []
@@ -42,9 +48,8 @@ def test_make_ready_powers_on_with_progress(robot, simulator):
 
 
 def test_make_ready_releases_the_brakes(robot, simulator):
-    simulator.control("power", to="off")
+    power_off(robot, simulator)
     simulator.control("power", to="on")
-    wait_for(lambda: not robot.send(MoveJ, "move_j", joint_positions=HOME).accepted, 15.0, "the driver to detect the power off")
     _, states = make_ready(robot)
     assert any("brakes" in state for state in states)
 
@@ -101,7 +106,7 @@ def test_make_ready_reports_conditions_that_require_an_operator(robot, simulator
 
 
 def test_cancel_and_timeout_end_make_ready(robot, simulator):
-    simulator.control("power", to="off")
+    power_off(robot, simulator)
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: goal.feedback, 10.0, "the first step")
     goal.cancel()

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <numbers>
 #include <optional>
@@ -12,6 +14,7 @@ using std::numbers::pi;
 
 constexpr Range wrench_range{-10000.0, 10000.0};
 constexpr Range position_range{-10.0, 10.0};
+constexpr Range joint_range{-1000.0, 1000.0};  // wrist 3 of a UR3e is endless
 constexpr std::array<std::string_view, 2> frames{"base", "tool"};
 
 // The kinds of objects, as functions of the world.
@@ -140,10 +143,22 @@ Action set_sensor_noise(RequestFields & fields)
   };
 }
 
+void require_within_limits(const RobotModel & model, const Vector6 & joints)
+{
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (joints[i] < model.position_min[i] || joints[i] > model.position_max[i]) {
+      throw RequestError(fmt::format("field 'joints[{}]' is {}: it must be between {} and {} rad", i, joints[i],
+                                     model.position_min[i], model.position_max[i]),
+                         "joints");
+    }
+  }
+}
+
 Action set_joints(RequestFields & fields)
 {
-  const Vector6 joints = fields.vector6("joints", {-2.0 * pi, 2.0 * pi});
+  const Vector6 joints = fields.vector6("joints", joint_range);
   return [=](ControlPortContext & context) -> json {
+    require_within_limits(context.pendant.model(), joints);
     context.pendant.runner().stop("the joints were set through the control port");
     context.arm.teleport(joints, context.state);
     context.collisions.reset();

@@ -1,9 +1,7 @@
 #include "world/joint_sensors.hpp"
 
-#include <cmath>
 #include <numbers>
 
-#include "common/pose.hpp"
 #include "kinematics/forward_kinematics.hpp"
 
 namespace ur_simulator {
@@ -29,6 +27,9 @@ JointSensors::JointSensors(const RobotModel & model, std::uint64_t seed)
 
 void JointSensors::step(ControllerState & state)
 {
+  if (!state.is_powered()) {
+    return;
+  }
   const Vector6 position = state.actual.position + position_noise * noise();
   state.measured.position = (position / encoder_step).array().round().matrix() * encoder_step;
   state.measured.current = state.actual.current + current_noise_.cwiseProduct(noise());

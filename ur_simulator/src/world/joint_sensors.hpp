@@ -14,7 +14,7 @@ class JointSensors {
  public:
   /// `model` must outlive this object.
   JointSensors(const RobotModel & model, std::uint64_t seed);
-  /// Adds noise to state.measured.
+  /// Adds noise to state.measured while the joints have power.
   void step(ControllerState & state);
 
  private:

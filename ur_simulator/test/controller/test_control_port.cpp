@@ -54,6 +54,20 @@ TEST_F(ControlPortTest, NamesFieldAndValueOfInvalidRequests)
             std::string::npos);
 }
 
+TEST(SetJointsTest, TheLastJointOfAUr3eIsEndless)
+{
+  SimulatorOptions options;
+  options.model = "ur3e";
+  SimulatedController controller(with_unique_address(options));
+  const json reply =
+      controller.control({{"command", "set_joints"}, {"joints", {0.0, -1.57, 1.57, -1.57, -1.57, 12.6}}});
+  EXPECT_TRUE(reply["ok"]) << reply;
+  const json beyond =
+      controller.control({{"command", "set_joints"}, {"joints", {0.0, -1.57, 1.57, -1.57, 12.6, 0.0}}});
+  EXPECT_EQ(beyond["error"],
+            "field 'joints[4]' is 12.6: it must be between -6.283185307179586 and 6.283185307179586 rad");
+}
+
 TEST_F(ControlPortTest, PushRaisesTcpForceAndEnds)
 {
   ASSERT_TRUE(request(R"({"command": "push", "force": [0, 25, 0], "duration": 0.2})")["ok"]);

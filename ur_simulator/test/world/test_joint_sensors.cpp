@@ -19,9 +19,16 @@ struct Deviation {
   Vector6 current = Vector6::Zero();
 };
 
-Deviation deviation_at_rest(const char * model)
+ControllerState powered_state()
 {
   ControllerState state;
+  state.robot_status_bits = 1;
+  return state;
+}
+
+Deviation deviation_at_rest(const char * model)
+{
+  ControllerState state = powered_state();
   JointSensors sensors(model_named(model), 1);
   Deviation sum;
   for (int i = 0; i < count; ++i) {
@@ -45,7 +52,7 @@ TEST(JointSensorsTest, ReadingsHaveTheNoiseOfRecordedRobots)
 
 TEST(JointSensorsTest, PositionsAreStepsOfTheEncoder)
 {
-  ControllerState state;
+  ControllerState state = powered_state();
   state.actual.position = Vector6::Constant(1.0);
   JointSensors sensors(model_named("ur10e"), 1);
   sensors.step(state);
@@ -57,7 +64,7 @@ TEST(JointSensorsTest, PositionsAreStepsOfTheEncoder)
 
 TEST(JointSensorsTest, TcpPoseIsThatOfTheMeasuredPositions)
 {
-  ControllerState state;
+  ControllerState state = powered_state();
   state.actual.position = default_position(model_named("ur10e"));
   JointSensors sensors(model_named("ur10e"), 1);
   sensors.step(state);
@@ -70,13 +77,22 @@ TEST(JointSensorsTest, TcpPoseIsThatOfTheMeasuredPositions)
 TEST(JointSensorsTest, NoiseDependsOnTheSeedAlone)
 {
   const auto first_reading = [](std::uint64_t seed) {
-    ControllerState state;
+    ControllerState state = powered_state();
     JointSensors sensors(model_named("ur10e"), seed);
     sensors.step(state);
     return state.measured.current;
   };
   EXPECT_EQ(first_reading(5), first_reading(5));
   EXPECT_NE(first_reading(5), first_reading(6));
+}
+
+TEST(JointSensorsTest, AnArmWithoutPowerHasNoNoise)
+{
+  ControllerState state;
+  JointSensors sensors(model_named("ur10e"), 1);
+  sensors.step(state);
+  EXPECT_EQ(state.measured.position, Vector6(Vector6::Zero()));
+  EXPECT_EQ(state.measured.current, Vector6(Vector6::Zero()));
 }
 
 }  // namespace
