@@ -147,8 +147,8 @@ void require_within_limits(const RobotModel & model, const Vector6 & joints)
 {
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (joints[i] < model.position_min[i] || joints[i] > model.position_max[i]) {
-      throw RequestError(fmt::format("field 'joints[{}]' is {}: it must be between {} and {} rad", i, joints[i],
-                                     model.position_min[i], model.position_max[i]),
+      throw RequestError(fmt::format("field 'joints[{}]' is {}: it must be between {} and {} rad", i,
+                                     joints[i], model.position_min[i], model.position_max[i]),
                          "joints");
     }
   }
