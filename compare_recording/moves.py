@@ -10,6 +10,7 @@ from typing import Optional, Sequence, Tuple, Union
 import numpy as np
 from robot_recording import TARGET, Motion, period
 from ur_ros_rtde_cli.recording import Recording
+from ur_ros_rtde_cli.recording_comparison import at
 from ur_ros_rtde_description.kinematics import Origin, flange_pose
 
 LEAST_PATH = {"movej": 0.02, "movel": 0.005}  # rad, m: shorter motions show no profile
@@ -25,7 +26,6 @@ class Move:
     """`velocity` and `acceleration` are the arguments of the call: of the joint with the longest path in rad, or of the tool in m."""
 
     kind: str
-    start: float  # s
     velocity: float
     acceleration: float
     last: Tuple[float, ...]  # rad, joints
@@ -59,12 +59,6 @@ class Track:
 
     def __str__(self) -> str:
         return "neither movej nor movel; the simulator follows it by servoj"
-
-
-def _regular(times: np.ndarray, joints: np.ndarray, step: float) -> np.ndarray:
-    """Returns the joints at regular times: a connection loses packages."""
-    grid = np.arange(times[0], times[-1], step)
-    return np.stack([np.interp(grid, times, joint) for joint in joints.T], axis=1)
 
 
 def _list(joints: Sequence[float]) -> str:
@@ -122,7 +116,7 @@ def _move(kind: str, times: np.ndarray, joints: np.ndarray, points: np.ndarray, 
     if misfit > MOST_MISFIT[kind]:
         return None
     top = math.sqrt(distance * acceleration)
-    return Move(kind, start, min(velocity, top), acceleration, tuple(map(float, joints[-1])), misfit, velocity < top, starts_program)
+    return Move(kind, min(velocity, top), acceleration, tuple(map(float, joints[-1])), misfit, velocity < top, starts_program)
 
 
 def recognize(recording: Recording, motion: Motion, origins: Sequence[Origin]) -> Union[Move, Track]:
@@ -138,4 +132,5 @@ def recognize(recording: Recording, motion: Motion, origins: Sequence[Origin]) -
     found = [move for move in candidates if move is not None]
     if found:
         return min(found, key=lambda move: move.misfit / MOST_MISFIT[move.kind])
-    return Track(_regular(times, joints, period(recording)), period(recording))
+    step = period(recording)  # regular, unlike the rows: a connection loses packages
+    return Track(at(recording, TARGET, np.arange(times[0], times[-1], step)), step)

@@ -12,6 +12,7 @@ target_q_0 to target_q_5 and actual_q_0 to actual_q_5; it may have target_qd, ac
 """
 
 import argparse
+import os
 import pathlib
 import sys
 from typing import List
@@ -47,7 +48,7 @@ def packages(_options: argparse.Namespace) -> List[str]:
 def run(options: argparse.Namespace, layout: Layout) -> int:
     env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1",
            "UR_SIMULATOR_PROGRAM": str(program(layout, "ur_simulator", "ur_simulator"))}
-    env["PYTHONPATH"] = f"{ROOT / 'ur_simulator' / 'python'}:{env['PYTHONPATH']}"
+    env["PYTHONPATH"] = os.pathsep.join([str(ROOT / "ur_simulator" / "python"), env["PYTHONPATH"]])
     command = [layout.python, ROOT / "compare_recording" / "robot_comparison.py", options.file, "--model", options.model]
     command += [part for pair in options.column for part in ("--column", pair)]
     command += ["--rate", options.rate] if options.rate is not None else []

@@ -102,10 +102,11 @@ def command_shell(options: argparse.Namespace) -> int:
     return subprocess.run([shell], env=env).returncode
 
 
-def _python_command(name: str, options: argparse.Namespace) -> int:
-    """Runs a module of its own, such as demo. `--help` and wrong arguments are handled without a build."""
+def command_module(options: argparse.Namespace) -> int:
+    """Runs a module of its own: demo, bench, plan, chaos or compare_recording. `--help` and wrong arguments are handled without a build."""
     arguments = _forwarded(options)
     layout = _layout(options)
+    name = options.command.replace("-", "_")
     module = importlib.import_module(f"ur_tools.{name}")
     parsed = module.parse(arguments)
     if hasattr(module, "check"):
@@ -117,26 +118,6 @@ def _python_command(name: str, options: argparse.Namespace) -> int:
     env = {**os.environ, "UR_LAYOUT": f"{layout.ros}:{layout.variant}", "PYTHONPATH": os.pathsep.join(modules),
            "PYTHONDONTWRITEBYTECODE": "1"}
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
-
-
-def command_demo(options: argparse.Namespace) -> int:
-    return _python_command("demo", options)
-
-
-def command_bench(options: argparse.Namespace) -> int:
-    return _python_command("bench", options)
-
-
-def command_plan(options: argparse.Namespace) -> int:
-    return _python_command("plan", options)
-
-
-def command_chaos(options: argparse.Namespace) -> int:
-    return _python_command("chaos", options)
-
-
-def command_compare_recording(options: argparse.Namespace) -> int:
-    return _python_command("compare_recording", options)
 
 
 def _run_cli_from_sources(python: str, arguments: List[str]) -> None:
@@ -269,7 +250,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
         _add_build_options(sub)
         sub.add_argument("arguments", nargs=argparse.REMAINDER, help="passed on unchanged")
 
-    add_forwarding("demo", command_demo, "simulate a robot, run the nodes, stop a motion on force and draw a figure")
+    add_forwarding("demo", command_module, "simulate a robot, run the nodes, stop a motion on force and draw a figure")
 
     test = add("test", command_test, "build and run tests; the last line is `N passed, N failed`")
     _add_build_options(test)
@@ -290,12 +271,12 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     build.add_argument("--tests", action="store_true", help="also build the tests")
 
     add_forwarding("sim", command_sim, "run the simulated controller; options go to ur_simulator (`sim -- --help`)")
-    add_forwarding("bench", command_bench, "measure latency and load")
-    add_forwarding("plan", command_plan, "plan a trajectory without a robot and draw it against its limits")
+    add_forwarding("bench", command_module, "measure latency and load")
+    add_forwarding("plan", command_module, "plan a trajectory without a robot and draw it against its limits")
     add_forwarding("view", command_view, "show robots in the browser: 3D scene, plots, state, recordings")
-    add_forwarding("chaos", command_chaos,
+    add_forwarding("chaos", command_module,
                    "send random goals during random faults; with --faults 0 a soak test, with --stops the stop property test")
-    add_forwarding("compare-recording", command_compare_recording, "compare a recording of a robot with the simulator")
+    add_forwarding("compare-recording", command_module, "compare a recording of a robot with the simulator")
     add_forwarding("shell", command_shell, "open a shell, or run one command, with the environment of the build")
 
     for name, text in CLI.items():

@@ -15,6 +15,7 @@ import numpy as np
 from .errors import CliError
 
 TIME, EVENT = "timestamp", "event"
+ELEMENT = re.compile(r"(.+)_(\d+)")  # the column of an element of a vector
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def _renamed(header: Sequence[str], names: Mapping[str, str]) -> List[str]:
 
 
 def _renamed_column(column: str, outputs: Mapping[str, str]) -> str:
-    match = re.fullmatch(r"(.+)_(\d+)", column)
+    match = ELEMENT.fullmatch(column)
     if column in outputs:
         return outputs[column]
     return f"{outputs[match[1]]}_{match[2]}" if match and match[1] in outputs else column
@@ -89,7 +90,7 @@ def _outputs(columns: Dict[str, np.ndarray]) -> Dict[str, np.ndarray]:
     """Joins the elements of vectors: actual_q_0 ... actual_q_5 are actual_q."""
     elements: Dict[str, List[np.ndarray]] = {}
     for column, values in columns.items():
-        match = re.fullmatch(r"(.+)_(\d+)", column)
+        match = ELEMENT.fullmatch(column)
         name = match[1] if match and int(match[2]) == len(elements.get(match[1], [])) else column
         elements.setdefault(name, []).append(values)
     return {name: np.stack(vectors, axis=1) for name, vectors in elements.items()}

@@ -30,7 +30,7 @@ class Comparison:
     differences: Dict[str, Difference]
 
 
-def _at(recording: Recording, name: str, times: np.ndarray) -> np.ndarray:
+def at(recording: Recording, name: str, times: np.ndarray) -> np.ndarray:
     """Returns the values at these times, between two rows by interpolation."""
     return np.stack([np.interp(times, recording.times, column) for column in recording.outputs[name].T], axis=1)
 
@@ -49,7 +49,7 @@ def _misfit(first: Recording, second: Recording, scales: Dict[str, float]) -> fl
     if len(times) < LEAST_OVERLAP * min(len(first.times), len(second.times) * np.ptp(first.times) / np.ptp(second.times)):
         return math.inf
     kept = first.times.searchsorted(times)
-    return sum(float(np.mean((_at(second, name, times) - first.outputs[name][kept]) ** 2)) / scale**2 for name, scale in scales.items())
+    return sum(float(np.mean((at(second, name, times) - first.outputs[name][kept]) ** 2)) / scale**2 for name, scale in scales.items())
 
 
 def best_shift(first: Recording, second: Recording) -> float:
@@ -84,7 +84,7 @@ def compare(first: Recording, second: Recording, names: Sequence[str], shift: Op
 
 
 def _difference(first: Recording, second: Recording, name: str, times: np.ndarray) -> Difference:
-    error = np.abs(_at(second, name, times) - first.outputs[name][first.times.searchsorted(times)])
+    error = np.abs(at(second, name, times) - first.outputs[name][first.times.searchsorted(times)])
     return Difference(error.max(axis=0), times[error.argmax(axis=0)], np.sqrt(np.mean(error**2, axis=0)))
 
 

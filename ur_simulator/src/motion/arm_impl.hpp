@@ -54,7 +54,7 @@ struct Arm::Impl {
   Impl(const RobotModel & robot_model, double cycle, const Vector6 & position)
       : model(robot_model),
         cycle_time(cycle),
-        servo_loop(cycle, position),
+        servo_loop(robot_model.series, cycle, position),
         writer(robot_model, cycle),
         dynamics(robot_model)
   {

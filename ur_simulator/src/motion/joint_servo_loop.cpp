@@ -2,8 +2,8 @@
 
 namespace ur_simulator {
 
-JointServoLoop::JointServoLoop(double cycle_time, const Vector6 & position)
-    : cycle_time_(cycle_time), gain_(cycle_time / (cycle_time + lag(cycle_time))), position_(position)
+JointServoLoop::JointServoLoop(Series series, double cycle_time, const Vector6 & position)
+    : cycle_time_(cycle_time), gain_(cycle_time / (cycle_time + lag(series))), position_(position)
 {
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kinematics/robot_model.hpp"
 #include "motion/setpoint.hpp"
 #include "state/controller_state.hpp"
 
@@ -9,10 +10,10 @@ namespace ur_simulator {
 /// constant velocity trails by lag() times its velocity; a joint at rest has no error.
 class JointServoLoop {
  public:
-  /// s; 0.5 ms in recordings of a UR5e (500 Hz), 0.24 ms in those of a UR5 (125 Hz).
-  static constexpr double lag(double cycle_time) { return cycle_time < 0.005 ? 0.5e-3 : 0.24e-3; }
+  /// s; 0.5 ms in recordings of a UR5e, 0.24 ms in those of a UR5 (CB3).
+  static constexpr double lag(Series series) { return series == Series::cb3 ? 0.24e-3 : 0.5e-3; }
 
-  JointServoLoop(double cycle_time, const Vector6 & position);
+  JointServoLoop(Series series, double cycle_time, const Vector6 & position);
   void advance(const Vector6 & target);
   /// Puts the joints at a position, at rest.
   void jump_to(const Vector6 & position);

@@ -18,7 +18,7 @@ TEST(JointServoLoopTest, FollowsTheTargetWithAConstantLag)
   ASSERT_TRUE(fixture.arm.speed_joint(six(0.5, 0, 0, 0, 0, 0), 5.0, 0.0));
   fixture.run(1.0);
   const double behind = fixture.state.target.position[0] - fixture.state.actual.position[0];
-  EXPECT_NEAR(behind, 0.5 * JointServoLoop::lag(fixture.dt), 1e-9);
+  EXPECT_NEAR(behind, 0.5 * JointServoLoop::lag(fixture.model.series), 1e-9);
   EXPECT_NEAR(fixture.state.actual.velocity[0], 0.5, 1e-9);
 }
 

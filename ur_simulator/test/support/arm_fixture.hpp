@@ -49,6 +49,12 @@ struct ArmFixture : CyclicFixture {
   double max_acceleration = 0.0;           ///< highest target acceleration of any joint, rad/s^2
 };
 
+/// The default position, moved away by these angles.
+inline Vector6 near_home(const ArmFixture & fixture, const Vector6 & away)
+{
+  return default_position(fixture.model) + away;
+}
+
 /// The larger of the distance (m) and the angle (rad) between two poses.
 inline double pose_distance(const Vector6 & a, const Vector6 & b)
 {
