@@ -80,16 +80,17 @@ typename rcl_cxx::Service<S>::SharedPtr RobotStateReceiver::serve(const std::str
 
 Status RobotStateReceiver::freshness() const
 {
-  const auto problem = [this] { return source_().link.error.message; };
+  const LinkStatus link = source_().link;
+  const std::string why = link.connected ? "this host or the network is late" : link.error.message;
   if (!received_) {
     return failure(ErrorCode::link_lost,
-                   fmt::format("no data has been received from the controller yet: {}", problem()));
+                   fmt::format("no data has been received from the controller yet: {}", why));
   }
   const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
-  if (age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
+  if (!link.connected || age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
     return failure(
         ErrorCode::link_lost,
-        fmt::format("no data has been received from the controller for {:.1f} s: {}", age, problem()));
+        fmt::format("no data has been received from the controller for {:.1f} s: {}", age, why));
   }
   return {};
 }
