@@ -275,6 +275,22 @@ TEST_F(RobotMotionTest, IsStoppedByTheWatchdogOnAHalfOpenConnection)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(RobotMotionTest, TheEndOfAProgramThatReceivesNothingNamesItsWatchdog)
+{
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 4.0;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}});
+  std::string message;
+  EXPECT_TRUE(eventually([&] {
+    const Status possible = robot->motion_possible();
+    message = possible ? "" : possible.error().message;
+    return message.find("watchdog") != std::string::npos;
+  })) << message;
+}
+
 TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
 {
   controller.start();

@@ -22,7 +22,7 @@ std::size_t sample_index(int index, const script::RegisterRange & free)
     throw RobotError(Error{ErrorCode::invalid_goal, fmt::format("output register {}: extensions may use {}",
                                                                 index, script::to_string(free))});
   }
-  return static_cast<std::size_t>(index - free.first);
+  return static_cast<std::size_t>(index - Sample::first_output_register);
 }
 
 Sample latest_sample(const Robot & robot)

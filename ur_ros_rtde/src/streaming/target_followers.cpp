@@ -144,13 +144,14 @@ class JointFollower : public TargetFollower {
     return {};
   }
 
-  Status advance(Run & run, const Sample &, double elapsed) override
+  Status advance(Run & run, const Sample & sample, double elapsed) override
   {
-    const double share = line_.advance(elapsed);
+    const double paced = sample.servo_pace() * elapsed;
+    const double share = line_.advance(paced);
     for (std::size_t i = 0; i < at_.size(); ++i) {
       at_[i] = from_[i] + share * (to_[i] - from_[i]);
     }
-    setpoint_time_ += elapsed / cycle_;
+    setpoint_time_ += paced / cycle_;
     run.control()->servoJ(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain,
                           setpoint_time_);
     return {};

@@ -69,9 +69,9 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
   TimeScaling time_scaling = make_time_scaling(requested_rate(state_.sample));
-  // The last setpoint is sent twice, because the control program extrapolates from the last two.
+  // The control program extrapolates from the last two setpoints on its way, so both are the end of the plan.
   for (bool at_end = time_scaling.time() >= plan.duration(); !at_end;) {
-    at_end = time_scaling.time() >= plan.duration();
+    at_end = state_.sample.servo_is_at_end(time_scaling.time() - plan.duration());
     const double before = state_.sample.controller_time;
     const auto stop_reason = run_.next(state_.sample);
     add_elapsed(before);
@@ -89,7 +89,7 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
 
 void ServoStream::add_elapsed(double before)
 {
-  elapsed_ = state_.sample.controller_time - before;
+  elapsed_ = state_.sample.servo_pace() * (state_.sample.controller_time - before);
   setpoint_time_ += std::clamp(elapsed_ / cycle_, 0.0, bridged_cycles);
 }
 

@@ -70,7 +70,7 @@ class ServoStream {
   const SetpointCallback on_setpoint_;
   const double cycle_;
   StreamState state_;
-  double elapsed_ = 0.0;  // s between the last two packages
+  double elapsed_ = 0.0;  // s between the last two setpoints
   double setpoint_time_;  // cycles
   std::vector<double> target_;
   std::deque<Target> targets_;

@@ -125,7 +125,7 @@ TEST(ExtensionCompositionTest, RejectsInvalidExtensionsByName)
   EXPECT_EQ(of("y = $in18f"),
             "extension `x`, line 1: input float register 18 is not available to extensions: use 19 to 22");
   EXPECT_EQ(of("$out18f(1)"),
-            "extension `x`, line 1: output float register 18 is not available to extensions: use 12 to 19 "
+            "extension `x`, line 1: output float register 18 is not available to extensions: use 13 to 19 "
             "except 18");
   EXPECT_EQ(of("$out3i(1)"),
             "extension `x`, line 1: output integer register 3 is not available to extensions: use 12 to 19");

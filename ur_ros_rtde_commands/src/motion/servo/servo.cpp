@@ -18,12 +18,12 @@ Outcome servo(Run & run, double duration, const std::function<void(const ServoSt
   double setpoint_time = sample.controller_time / cycle;
   bool at_end = false;
   for (double time = 0.0; !at_end;) {
-    at_end = time >= duration;
+    at_end = sample.servo_is_at_end(time - duration);
     const double before = sample.controller_time;
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    const double elapsed = std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
+    const double elapsed = sample.servo_pace() * std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
     time += elapsed;
     setpoint_time += elapsed / cycle;
     run.progress(smooth_step(std::min(time / duration, 1.0)));

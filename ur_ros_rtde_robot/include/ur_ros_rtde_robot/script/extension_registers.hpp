@@ -17,15 +17,15 @@ struct RegisterRange {
 };
 
 /// Registers available to extensions; docs/use/writing_a_plugin.md lists the users of all others. The float
-/// registers 18 are the trigger and its acknowledgement. ur_rtde's IO interface writes the inputs 18 to 22,
-/// its receive interface reads the outputs 12 to 19.
+/// registers 18 are the trigger and its acknowledgement, output 12 is the time of servoJ's target. ur_rtde's
+/// IO interface writes the inputs 18 to 22, its receive interface reads the outputs 12 to 19.
 inline constexpr int trigger_register = 18;          ///< input float register
 inline constexpr int acknowledgement_register = 18;  ///< output float register
 inline constexpr RegisterRange free_inputs{19, 22};  ///< integer and float
 inline constexpr RegisterRange free_int_outputs{12, 19};
-inline constexpr RegisterRange free_float_outputs{12, 19, 18};
+inline constexpr RegisterRange free_float_outputs{13, 19, 18};
 
-/// "12 to 19 except 18"
+/// "13 to 19 except 18"
 inline std::string to_string(const RegisterRange & range)
 {
   return std::to_string(range.first) + " to " + std::to_string(range.last) +

@@ -18,7 +18,7 @@ struct ScriptRegisters {
 /// `$out19f(x)` write output registers (i: integer, f: float). A line that begins with `$5.10 ` is used from
 /// PolyScope 5.10 on and omitted for earlier versions.
 ///
-/// Extensions may use the inputs 19 to 22, the integer outputs 12 to 19, and the float outputs 12 to 17 and
+/// Extensions may use the inputs 19 to 22, the integer outputs 12 to 19, and the float outputs 13 to 17 and
 /// 19. The float registers 18 are the trigger and its acknowledgement. All other registers belong to ur_rtde.
 struct ScriptExtension {
   // Initialized, so that g++ 11 does not warn when designated initializers leave members out.

@@ -125,13 +125,21 @@ struct Sample {
   Vector6 payload_inertia;  ///< kg m^2: Ixx, Iyy, Izz, Ixy, Ixz, Iyz
 
   AsyncStatus async;                                 ///< output integer register 2 (+ register offset)
-  std::array<std::int32_t, 8> output_int_registers;  ///< 12-19 (+ register offset)
-  std::array<double, 8> output_double_registers;     ///< 12-19 (+ register offset)
+  static constexpr int first_output_register = 12;   ///< + register offset
+  std::array<std::int32_t, 8> output_int_registers;  ///< 12-19
+  std::array<double, 8> output_double_registers;     ///< 12-19
 
   SafetyBits safety() const;
   bool is_powered_on() const { return (robot_status_bits & 1U) != 0; }
   /// See script_extension.hpp: 0 when no extension runs, its number when it has finished.
-  double extension_acknowledgement() const { return output_double_registers[18 - 12]; }
+  double extension_acknowledgement() const { return output_double_registers[18 - first_output_register]; }
+  /// Time of servoJ's target after that of the newest setpoint, in cycles; below -1 if setpoints came in a
+  /// bunch, for example from a busy host. The target is never faster than the setpoints, so it stays behind.
+  double servo_ahead() const { return output_double_registers[12 - first_output_register]; }
+  /// Share of the elapsed time by which the next setpoint may advance, so that the target catches up.
+  double servo_pace() const;
+  /// Whether the target follows only the end of a plan, which is over since `overtime` s (negative: not yet).
+  bool servo_is_at_end(double overtime) const;
   bool is_program_running() const { return runtime_state == RuntimeState::playing; }
 };
 
