@@ -88,9 +88,8 @@ Status RobotStateReceiver::freshness() const
   }
   const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
   if (!link.connected || age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
-    return failure(
-        ErrorCode::link_lost,
-        fmt::format("no data has been received from the controller for {:.1f} s: {}", age, why));
+    return failure(ErrorCode::link_lost,
+                   fmt::format("no data has been received from the controller for {:.1f} s: {}", age, why));
   }
   return {};
 }

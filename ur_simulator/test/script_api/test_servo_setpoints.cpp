@@ -11,9 +11,9 @@ namespace {
 
 constexpr int servo_j = 11;
 constexpr int servo_stop = 16;
-constexpr int bridged_cycles = 5;      // the longest gap that the script bridges; the sender skips the rest
-constexpr double step = 0.001;         // rad in one cycle, 0.5 rad/s
-constexpr double tolerance = 1e-9;     // rad
+constexpr int bridged_cycles = 5;   // the longest gap that the script bridges; the sender skips the rest
+constexpr double step = 0.001;      // rad in one cycle, 0.5 rad/s
+constexpr double tolerance = 1e-9;  // rad
 constexpr std::size_t ahead_register = 12;
 
 /// A sender that answers each cycle with a setpoint, and a connection that delays it.
@@ -44,8 +44,10 @@ struct ServoSetpointsTest : ControlScriptTest {
   double ahead() const { return fixture.state.outputs.doubles[ahead_register]; }
   double target() const { return fixture.machine->global("servo_target")->vector6()->coeff(5); }
 
-  /// Moves for `cycles`, more slowly while the target is behind. Returns its distance in each cycle, in steps.
-  std::vector<double> follow(int cycles, const Delay & delay, const Speed & speed = [](double) { return step; })
+  /// Moves for `cycles`, more slowly while the target is behind. Returns its distance in each cycle, in
+  /// steps.
+  std::vector<double> follow(
+      int cycles, const Delay & delay, const Speed & speed = [](double) { return step; })
   {
     const double begin = sent_time;
     struct Package {

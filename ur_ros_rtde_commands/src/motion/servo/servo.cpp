@@ -23,7 +23,8 @@ Outcome servo(Run & run, double duration, const std::function<void(const ServoSt
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    const double elapsed = sample.servo_pace() * std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
+    const double elapsed =
+        sample.servo_pace() * std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
     time += elapsed;
     setpoint_time += elapsed / cycle;
     run.progress(smooth_step(std::min(time / duration, 1.0)));
