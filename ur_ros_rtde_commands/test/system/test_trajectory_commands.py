@@ -229,7 +229,7 @@ def test_a_delayed_host_skips_no_part_of_the_trajectory(robot, simulator, driver
         recorder.update()
     recorder.record_until_finished(goal)
     goal.succeeded()
-    assert recorder.max_joint_speed() < 0.5 * 1.05
+    assert recorder.max_joint_speed() < 0.5 * 1.03
 
 
 def test_aborts_and_stops_if_the_tracking_error_is_too_large(robot, simulator):
