@@ -62,7 +62,7 @@ class RobotView:
         self._follow_reported_model()
         self.scene.update(self.state)
         if self._simulator is not None:
-            self.scene.show_surfaces(self._simulator.surfaces, self.state)
+            self.scene.show_surfaces(self._simulator.surfaces)
         for panel in self.panels:
             panel.update(self.state)
 

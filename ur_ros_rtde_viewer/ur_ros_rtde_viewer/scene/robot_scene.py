@@ -77,10 +77,10 @@ class RobotScene:
         ghost.set_positions(other.positions)
         ghost.set_visible(True)
 
-    def show_surfaces(self, surfaces: Sequence[Surface], state: RobotState) -> None:
+    def show_surfaces(self, surfaces: Sequence[Surface]) -> None:
         """Shows the surfaces of a simulated world, in the base frame of the controller."""
         if self._surfaces is not None:
-            self._surfaces.show(surfaces, None if state.tcp_pose is None else state.tcp_pose.position)
+            self._surfaces.show(surfaces)
 
     def remove(self) -> None:
         for part in (self._surfaces, self.tcp, self.ghost, self.arm):
