@@ -21,7 +21,7 @@ CYCLE = 0.002  # s, of a controller
 CYCLES = 500
 LATENCY_LIMITS = (0.5, 5.0)  # ms, of p99 and maximum
 STEAL_LIMIT = 0.01  # share of the processor time that goes to other virtual machines
-LITTLE_MEMORY = 2.0e9
+LEAST_MEMORY = 2.0e9
 _CPP = "#include <concepts>\n#include <span>\nint main() { static_assert(__cplusplus >= 202002L); }\n"
 
 
@@ -108,7 +108,7 @@ def memory() -> Finding:
     total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     jobs, cores = build.default_jobs(), len(os.sched_getaffinity(0))
     text = f"{total / 1e9:.1f} GB, {cores} core{'s' * (cores > 1)}: builds with {jobs} job{'s' * (jobs > 1)}"
-    if total < LITTLE_MEMORY:
+    if total < LEAST_MEMORY:
         return Finding("memory", NOTE, text, "The largest files take about 1 GB each: close other programs, or add swap space.")
     return Finding("memory", OK, text)
 

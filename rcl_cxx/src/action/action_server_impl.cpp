@@ -155,7 +155,7 @@ ActionServerImpl::Goals ActionServerImpl::get_active_goals() const
   return active;
 }
 
-std::shared_ptr<void> ActionServerImpl::make_missing_result(const GoalUUID & id, GoalStatus status) const
+std::shared_ptr<void> ActionServerImpl::make_empty_result(const GoalUUID & id, GoalStatus status) const
 {
   std::shared_ptr<void> response = make_message(type_.result_response);
   type_.set_status(response.get(), status);
@@ -172,7 +172,7 @@ void ActionServerImpl::abort_all(const char * reason, bool take_requests) noexce
   try {
     Goals goals = get_active_goals();
     std::erase_if(goals, [this](const auto & goal) {
-      return !try_to_finish(*goal, GoalStatus::aborted, make_missing_result(goal->id(), GoalStatus::aborted));
+      return !try_to_finish(*goal, GoalStatus::aborted, make_empty_result(goal->id(), GoalStatus::aborted));
     });
     if (!goals.empty()) {
       RCL_CXX_WARN(node()->get_logger(), "{}: {}, {} active goals aborted", name_, reason, goals.size());
@@ -240,7 +240,7 @@ bool ActionServerImpl::publish_feedback(const ServerGoalImpl & goal, void * mess
 void ActionServerImpl::abort(ServerGoalImpl & goal) noexcept
 {
   try {
-    try_to_finish(goal, GoalStatus::aborted, make_missing_result(goal.id(), GoalStatus::aborted));
+    try_to_finish(goal, GoalStatus::aborted, make_empty_result(goal.id(), GoalStatus::aborted));
   } catch (const std::exception & error) {
     RCL_CXX_ERROR(node()->get_logger(), "{}: goal {} cannot be aborted: {}", name_, goal.id().short_string(),
                   error.what());

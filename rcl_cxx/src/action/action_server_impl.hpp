@@ -116,7 +116,7 @@ class ActionServerImpl : public Waitable {
   void wait_for_result_requests(bool take_requests);
   void send_result(const rmw_request_id_t & request, ServerGoalImpl & goal);
   /// The result of a goal that has none, or none that can be sent.
-  std::shared_ptr<void> make_missing_result(const GoalUUID & id, GoalStatus status) const;
+  std::shared_ptr<void> make_empty_result(const GoalUUID & id, GoalStatus status) const;
   void publish_status_locked();
   void expire_goals();
   void schedule_expiry_locked();

@@ -293,7 +293,7 @@ bool ActionServerImpl::take_result()
   const GoalUUID id = type_.get_goal_id_of_result_request(request.get());
   const auto goal = find(id);
   if (!goal) {
-    respond(kResultService, request_id, make_missing_result(id, GoalStatus::unknown));
+    respond(kResultService, request_id, make_empty_result(id, GoalStatus::unknown));
     return true;
   }
   {
@@ -312,7 +312,7 @@ void ActionServerImpl::send_result(const rmw_request_id_t & request, ServerGoalI
   const GoalUUID id = goal.id();
   const GoalStatus status = goal.get_status();
   respond(kResultService, request, goal.result_response,
-          [this, id, status] { return make_missing_result(id, status); });
+          [this, id, status] { return make_empty_result(id, status); });
   goal.result_sent = true;
 }
 

@@ -14,7 +14,7 @@
 namespace rcl_cxx::detail {
 class Waitable;
 
-/// One item of work for the executor's thread: a source of a waitable, or a task.
+/// One item of work for the executor's thread: either `source` of `waitable`, or `task`.
 struct Event {
   std::weak_ptr<Waitable> waitable;
   std::size_t source = 0;

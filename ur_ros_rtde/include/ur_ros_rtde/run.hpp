@@ -84,8 +84,8 @@ class Run {
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
   /// Waits until the arm is at rest at the target, with progress. For motions whose end the controller does
   /// not report: servo control, scripts. Fails (not_reached) when the arm has been at rest elsewhere for 2 s.
-  [[nodiscard]] Outcome until_at_joints(const std::vector<double> & positions);
-  [[nodiscard]] Outcome until_at_pose(const std::vector<double> & pose);
+  [[nodiscard]] Outcome until_at_rest_at_joints(const std::vector<double> & positions);
+  [[nodiscard]] Outcome until_at_rest_at_pose(const std::vector<double> & pose);
   /// The last asynchronous motion has ended, or has not started within 1 s.
   bool motion_ended() const;
   /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.

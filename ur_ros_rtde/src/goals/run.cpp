@@ -306,12 +306,12 @@ Outcome Run::until_at(const Distance & distance, double tolerance, const char * 
                                                               distance(state()), unit));
 }
 
-Outcome Run::until_at_joints(const std::vector<double> & positions)
+Outcome Run::until_at_rest_at_joints(const std::vector<double> & positions)
 {
   return until_at(distance_to_joints(positions), servo_joint_tolerance, "rad");
 }
 
-Outcome Run::until_at_pose(const std::vector<double> & pose)
+Outcome Run::until_at_rest_at_pose(const std::vector<double> & pose)
 {
   return until_at(distance_to_pose(pose), servo_position_tolerance, "m");
 }

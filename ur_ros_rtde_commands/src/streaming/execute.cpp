@@ -94,7 +94,7 @@ ExecutionResult execute(Run & run, const Execution & execution)
   ServoStream stream(run, execution.servo, execution.on_setpoint);
   Outcome outcome = stream.execute(plan->trajectory, plan->limits);
   if (outcome) {
-    outcome = execution.wait_for_arrival ? execution.wait_for_arrival() : stream.settle();
+    outcome = execution.wait_for_arrival ? execution.wait_for_arrival() : stream.finish();
   }
   return {outcome, stream.max_tracking_error()};
 }

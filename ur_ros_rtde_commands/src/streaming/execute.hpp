@@ -27,7 +27,7 @@ struct Execution {
   ServoStream::SetpointCallback on_setpoint = [](const trajectory::Trajectory &, const StreamState &) {
     return Status();
   };
-  /// Waits until the arm has followed the last setpoint. Default: ServoStream::settle().
+  /// Waits until the arm has followed the last setpoint. Default: ServoStream::finish().
   std::function<Outcome()> wait_for_arrival;
 };
 

@@ -186,9 +186,9 @@ void ServoStream::slow_down(const Run::Braking & braking, const Trajectory & pla
   }
 }
 
-Outcome ServoStream::settle()
+Outcome ServoStream::finish()
 {
-  const Outcome arrived = run_.until_at_joints(target_);
+  const Outcome arrived = run_.until_at_rest_at_joints(target_);
   if (arrived) {
     run_.control()->servoStop(servo_stop_deceleration);
   }

@@ -41,7 +41,7 @@ class ServoStream {
   /// in 4 ms, by slowing down its time scaling.
   Outcome execute(const trajectory::Trajectory & plan, const trajectory::Limits & limits);
   /// Waits until the arm has followed the last setpoint, then ends servo control.
-  Outcome settle();
+  Outcome finish();
 
   double max_tracking_error() const { return max_tracking_error_; }
 

@@ -13,7 +13,7 @@ namespace {
 using kinematics::Pose;
 using trajectory::Joints;
 
-constexpr std::size_t most_poses = 10000;
+constexpr std::size_t max_poses = 10000;
 
 Vector6 to_array(const std::vector<double> & values)
 {
@@ -48,8 +48,8 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     check.above_zero("speed", goal.speed, 3.0, "m/s")
         .above_zero("rotation_speed", goal.rotation_speed, 6.28, "rad/s")
         .in_range("blend_radius", goal.blend_radius, 0.0, 1.0, "m")
-        .that(!goal.poses.empty() && goal.poses.size() <= most_poses,
-              fmt::format("poses has {} entries, it must have 1 to {}", goal.poses.size(), most_poses));
+        .that(!goal.poses.empty() && goal.poses.size() <= max_poses,
+              fmt::format("poses has {} entries, it must have 1 to {}", goal.poses.size(), max_poses));
     for (std::size_t i = 0; i < goal.poses.size() && check.ok(); ++i) {
       check.pose(fmt::format("poses[{}]", i), goal.poses[i]);
     }

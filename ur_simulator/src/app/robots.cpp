@@ -100,7 +100,7 @@ void Robots::add(const AppOptions & options, const SimulatorOptions & simulator)
         [prefix](const LogEntry & entry) { print_line(prefix + to_string(entry)); });
   }
   if (client_log_) {
-    controller->log_clients(*client_log_, options.count > 1 ? simulator.address : "");
+    controller->start_client_log(*client_log_, options.count > 1 ? simulator.address : "");
   }
   robots_.push_back({simulator.address, std::move(controller), {}});
 }

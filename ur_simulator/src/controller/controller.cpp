@@ -253,7 +253,7 @@ nlohmann::json Controller::control(const nlohmann::json & request)
 
 // ---- client log
 
-void Controller::log_clients(DiagramWriter & writer, const std::string & robot_name)
+void Controller::start_client_log(DiagramWriter & writer, const std::string & robot_name)
 {
   client_log_.emplace(writer, state_.timestamp, robot_name);
   for (const auto & [name, listener] : control_port_context_.listeners) {

@@ -82,7 +82,7 @@ class Controller {
   void add_observer(Observer observer) { observers_.push_back(std::move(observer)); }
   /// Adds what this robot and its clients do to the diagram, from now on. `robot_name`: "" if it is the only
   /// robot of the diagram.
-  void log_clients(DiagramWriter & writer, const std::string & robot_name);
+  void start_client_log(DiagramWriter & writer, const std::string & robot_name);
 
  private:
   /// Requests of the program, handled after its cycle.

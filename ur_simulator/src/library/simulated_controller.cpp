@@ -13,7 +13,7 @@ struct SimulatedController::Impl {
   explicit Impl(const SimulatorOptions & options_) : options(options_), controller(options_)
   {
     if (!options.client_log.empty()) {
-      controller.log_clients(client_log.emplace(options.client_log), "");
+      controller.start_client_log(client_log.emplace(options.client_log), "");
     }
     thread = std::thread([this] { controller.run(); });
   }

@@ -29,7 +29,7 @@ struct Field {
 
 enum class BodyType { none, json, file };
 
-/// An operation of the Robot API.
+/// One route of the Robot API: an HTTP method and a path.
 struct Route {
   std::string_view method;
   /// Path below the API's base path. A part "{name}" at the end is a parameter.

@@ -50,7 +50,8 @@ struct InputField {
   void (*read)(PackageReader & from, unsigned index, ControllerState & state, MaskedInputs & masked);
 };
 
-/// All fields of PolyScope 3 and 5, sorted by name. `min_version` tells which versions have a field.
+/// All fields of PolyScope 3 and 5, sorted by name. `min_version`: for each controller generation, the
+/// first version that has the field.
 const std::vector<OutputField> & output_fields();
 const std::vector<InputField> & input_fields();
 

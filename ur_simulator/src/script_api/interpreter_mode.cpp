@@ -69,7 +69,7 @@ std::optional<std::string> InterpreterMode::handle_command(std::string_view line
   return fmt::format("ack: {}: {}\n", last_id_, line);
 }
 
-void InterpreterMode::interpret(const Line & line)
+void InterpreterMode::accept_statement(const Line & line)
 {
   const auto function = extension_->add(line.text);
   if (!function) {
@@ -94,7 +94,7 @@ void InterpreterMode::interpret_queue()
     queue_.pop_front();
     queued_bytes_ -= line.text.size() + statement_bytes;
     cycle_bytes_ += line.text.size() + statement_bytes;
-    interpret(line);
+    accept_statement(line);
   }
 }
 

@@ -56,7 +56,7 @@ class InterpreterMode {
   };
 
   std::optional<std::string> handle_command(std::string_view line);
-  void interpret(const Line & line);
+  void accept_statement(const Line & line);
   void interpret_queue();
   void discard_queue(std::string_view reason);
   void clear();

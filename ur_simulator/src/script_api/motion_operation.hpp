@@ -9,7 +9,7 @@
 namespace ur_simulator::script_api {
 
 /// A call that moves the arm. It lasts until Arm::call_complete(); meanwhile no other call may move the arm.
-class MotionOperation : public urscript::Operation {
+class MotionOperation : public urscript::PendingCall {
  public:
   MotionOperation(RobotContextPtr robot, MotionId motion);
   ~MotionOperation() override;

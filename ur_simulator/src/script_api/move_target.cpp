@@ -25,7 +25,7 @@ tl::expected<Vector6, std::string> joint_target(const RobotContext & robot, cons
 namespace {
 
 /// A path to an unreachable pose: a protective stop, again whenever the program is resumed.
-class UnreachableMove : public urscript::Operation {
+class UnreachableMove : public urscript::PendingCall {
  public:
   UnreachableMove(const RobotContextPtr & robot, std::string reason)
       : robot_(robot), reason_(std::move(reason))
@@ -60,7 +60,7 @@ Outcome start_path_move(const RobotContextPtr & robot, CallContext & context,
     context.host.text_message(
         fmt::format("Overlapping Blends: the waypoint on line {} is skipped", context.line));
   } else if (const auto ends = robot->access.arm.path_endpoints();
-             ends && std::holds_alternative<std::unique_ptr<urscript::Operation>>(outcome)) {
+             ends && std::holds_alternative<std::unique_ptr<urscript::PendingCall>>(outcome)) {
     robot->waypoint = ends->target;
   }
   return outcome;

@@ -45,9 +45,9 @@ struct CallContext {
 
 /// A call of a builtin that takes physical time. It is polled once per control cycle, first in the cycle
 /// after the call, and destroyed after it returned its value or after cancel().
-class Operation {
+class PendingCall {
  public:
-  virtual ~Operation() = default;
+  virtual ~PendingCall() = default;
   /// The value of the call, nothing while it is in progress, or the error that ends the program.
   virtual tl::expected<std::optional<Value>, std::string> poll(CallContext & context) = 0;
   /// Asked after each poll() without a value: a function of the program that the thread executes before the
@@ -72,7 +72,7 @@ struct Failure {
 /// Stops the program without an error, as `halt` does.
 struct Halt {};
 
-using Outcome = std::variant<Value, NextCycle, std::unique_ptr<Operation>, Failure, Halt>;
+using Outcome = std::variant<Value, NextCycle, std::unique_ptr<PendingCall>, Failure, Halt>;
 
 /// One value per parameter of the builtin. A parameter without default that was not passed is Type::none.
 using Arguments = std::span<const Value>;

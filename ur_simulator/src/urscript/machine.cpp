@@ -107,7 +107,7 @@ struct Machine::Impl final : ProgramExtension {
 
   void remove_all() override
   {
-    interpreter.kill_threads_of_extensions(program.code().functions.size());
+    interpreter.kill_threads_of_added_functions(program.code().functions.size());
     interpreter.replace_code(program.code());
     extended.reset();
   }

@@ -10,7 +10,7 @@ struct Motion {
   int abandoned = 0;
 };
 
-class MotionOperation : public Operation {
+class MotionOperation : public PendingCall {
  public:
   explicit MotionOperation(Motion & motion) : motion_(motion) {}
   tl::expected<std::optional<Value>, std::string> poll(CallContext &) override

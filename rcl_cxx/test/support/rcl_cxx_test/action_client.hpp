@@ -15,7 +15,7 @@
 #include "rcl_cxx/node.hpp"
 
 namespace rcl_cxx {
-/// The numbers are those of action_msgs/srv/CancelGoal.
+/// Values match action_msgs/srv/CancelGoal.
 enum class CancelCode : std::int8_t { none = 0, rejected = 1, unknown_goal = 2, goal_terminated = 3 };
 
 struct CancelResponse {

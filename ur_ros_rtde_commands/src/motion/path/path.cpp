@@ -119,8 +119,8 @@ Outcome run_path(Run & run, const Waypoints & waypoints,
     return report.error;
   }
   const Waypoint & last = waypoints.back();
-  return last.joint_positions.empty() ? run.until_at_pose(to_ur(last.pose))
-                                      : run.until_at_joints(last.joint_positions);
+  return last.joint_positions.empty() ? run.until_at_rest_at_pose(to_ur(last.pose))
+                                      : run.until_at_rest_at_joints(last.joint_positions);
 }
 
 }  // namespace ur_ros_rtde

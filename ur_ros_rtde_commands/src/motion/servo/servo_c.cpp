@@ -21,7 +21,7 @@ class ServoC : public Command<ur_ros_rtde_msgs::action::ServoC> {
   {
     const auto target = tcp_target(goal, run.state());
     run.control()->servoC(target, goal.speed, goal.acceleration, goal.blend_radius);
-    return finish_servo(run, run.until_at_pose(target), goal.deceleration);
+    return finish_servo(run, run.until_at_rest_at_pose(target), goal.deceleration);
   }
 };
 

@@ -24,7 +24,7 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
       const auto target = interpolate_joints(start, goal.joint_positions, step.fraction);
       run.control()->servoJ(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain, step.time);
     };
-    const auto wait_for_arrival = [&] { return run.until_at_joints(goal.joint_positions); };
+    const auto wait_for_arrival = [&] { return run.until_at_rest_at_joints(goal.joint_positions); };
     return servo(run, time, send, wait_for_arrival, goal.deceleration);
   }
 };

@@ -28,7 +28,7 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
       const auto target = interpolate_pose(start, end, step.fraction);
       run.control()->servoL(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain);
     };
-    return servo(run, time, send, [&] { return run.until_at_pose(end); }, goal.deceleration);
+    return servo(run, time, send, [&] { return run.until_at_rest_at_pose(end); }, goal.deceleration);
   }
 };
 

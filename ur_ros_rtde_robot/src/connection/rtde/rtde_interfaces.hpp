@@ -47,9 +47,9 @@ class RtdeInterfaces {
 
   /// Opens the IO interface unless it is open. Takes up to the connect timeout.
   Status ensure_io();
-  /// Uploads and starts the control program, then its watchdog. Reuses the pending connection if it works.
-  /// Takes up to some seconds if the robot does not start the program. The previous program must have been
-  /// stopped.
+  /// Uploads and starts the control program, then its watchdog. Reuses the pending connection if it is
+  /// usable. May take several seconds if the robot does not start the program. The previous program must have
+  /// been stopped.
   Status start_control(const ControllerVersion & version, const std::stop_token & stop);
   /// Opens a pending connection for a program that the URCap will start. Does nothing if there is one.
   Status connect_pending_control();
@@ -61,7 +61,7 @@ class RtdeInterfaces {
   /// Ends the control program and makes its connection pending, until start_control(). False unless the
   /// program has ended because of this: it hangs, was stopped, or another one runs, or ran, in its place.
   bool suspend_control();
-  /// There is a pending connection.
+  /// Whether there is a pending connection.
   bool has_pending_control() const;
   /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
   /// robot accepts another control interface.

@@ -141,7 +141,8 @@ bool ScriptMonitor::replaced_before_begin()
 
 bool ScriptMonitor::update()
 {
-  return read_messages(message_wait) || (!messages_left_ && (has_failed() || has_ended())) || must_stop();
+  return read_messages(message_wait) || (!messages_left_ && (complete_if_failed() || complete_if_ended())) ||
+         complete_if_it_must_stop();
 }
 
 /// Bounded in time, so that a script that writes faster than ScriptOptions::on_text returns can be stopped.
@@ -213,7 +214,7 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
 }
 
 /// A compile error arrives without a begin marker. Errors of other programs can arrive at any time.
-bool ScriptMonitor::has_failed()
+bool ScriptMonitor::complete_if_failed()
 {
   if (!error_seen_ || Clock::now() - *error_seen_ <= max_skew) {
     return false;
@@ -235,7 +236,7 @@ bool ScriptMonitor::complete_with_error()
                   fmt::format("the controller does not take the script: {}", text));
 }
 
-bool ScriptMonitor::has_ended()
+bool ScriptMonitor::complete_if_ended()
 {
   if (ended_before_begin_) {
     return complete_as_stopped();
@@ -277,7 +278,7 @@ bool ScriptMonitor::complete_as_stopped()
                   "the script was stopped: on the pendant, by the dashboard, or by another program");
 }
 
-bool ScriptMonitor::must_stop()
+bool ScriptMonitor::complete_if_it_must_stop()
 {
   const auto link = state_.link();
   const auto sample = state_.latest();
@@ -302,10 +303,10 @@ bool ScriptMonitor::must_stop()
       return complete(ScriptEnd::interrupted, reason->code, reason->message);
     }
   }
-  return limit_exceeded();
+  return complete_if_late();
 }
 
-bool ScriptMonitor::limit_exceeded()
+bool ScriptMonitor::complete_if_late()
 {
   const auto elapsed = Clock::now() - sent_;
   if (elapsed > options_.timeout) {

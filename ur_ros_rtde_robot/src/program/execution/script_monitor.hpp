@@ -45,10 +45,10 @@ class ScriptMonitor {
   bool update();
   bool replaced_before_begin();
   bool read_messages(std::chrono::milliseconds wait);
-  bool has_failed();
-  bool has_ended();
-  bool must_stop();
-  bool limit_exceeded();
+  bool complete_if_failed();
+  bool complete_if_ended();
+  bool complete_if_it_must_stop();
+  bool complete_if_late();
 
   void on_message(const PrimaryMessage & message);
   void on_text(const std::string & text);

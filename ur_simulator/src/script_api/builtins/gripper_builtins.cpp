@@ -8,7 +8,7 @@ namespace ur_simulator::script_api {
 namespace {
 
 /// Waits until the gripper is no longer busy.
-class GripperOperation final : public urscript::Operation {
+class GripperOperation final : public urscript::PendingCall {
  public:
   explicit GripperOperation(const SoftGripper & gripper) : gripper_(gripper) {}
   tl::expected<std::optional<Value>, std::string> poll(CallContext &) override

@@ -8,7 +8,7 @@ namespace ur_simulator::script_api {
 namespace {
 
 /// interpreter_mode(): lasts until it is ended by a statement or by another thread.
-class InterpreterOperation final : public urscript::Operation {
+class InterpreterOperation final : public urscript::PendingCall {
  public:
   explicit InterpreterOperation(RobotContextPtr robot) : robot_(std::move(robot)) {}
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double connect_timeout = 2.0;  // s (script manual, "socket_open")
 
 /// Waits for the connection. Result: True, or False on failure or timeout.
-class ConnectOperation final : public urscript::Operation {
+class ConnectOperation final : public urscript::PendingCall {
  public:
   explicit ConnectOperation(std::shared_ptr<ScriptSocket> socket) : socket_(std::move(socket)) {}
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override

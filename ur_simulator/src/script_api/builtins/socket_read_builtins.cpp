@@ -22,7 +22,7 @@ Fallback always(Value value)
 }
 
 /// Waits for a value.
-class ReadOperation final : public urscript::Operation {
+class ReadOperation final : public urscript::PendingCall {
  public:
   ReadOperation(const std::shared_ptr<ScriptSocket> & socket, Extractor extract, Fallback otherwise,
                 double timeout)

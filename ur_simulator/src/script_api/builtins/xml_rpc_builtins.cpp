@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t rpc_factory_cost = 100;
 
 /// Waits for the response, without a limit as on the robot; the end of the thread cancels it.
-class RemoteCallOperation final : public urscript::Operation {
+class RemoteCallOperation final : public urscript::PendingCall {
  public:
   explicit RemoteCallOperation(std::shared_ptr<HttpRequest> request) : request_(std::move(request)) {}
 

@@ -9,7 +9,7 @@ namespace ur_simulator::urscript {
 namespace {
 
 /// Waits for a number of control cycles.
-class Sleep : public Operation {
+class Sleep : public PendingCall {
  public:
   explicit Sleep(double cycles) : left_(cycles) {}
 
@@ -39,7 +39,7 @@ Outcome sleep(CallContext & context, Arguments arguments)
 }
 
 /// Waits until the operator has closed the popup.
-class PopupWait : public Operation {
+class PopupWait : public PendingCall {
  public:
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override
   {
@@ -63,7 +63,7 @@ Outcome popup(CallContext & context, Arguments arguments)
 }
 
 /// Waits until the operator has entered a value.
-class AnswerWait : public Operation {
+class AnswerWait : public PendingCall {
  public:
   explicit AnswerWait(ValueRequest request) : request_(std::move(request)) {}
 

@@ -69,7 +69,7 @@ void Interpreter::kill_thread(Thread & thread)
   }
 }
 
-void Interpreter::kill_threads_of_extensions(std::size_t program_functions)
+void Interpreter::kill_threads_of_added_functions(std::size_t program_functions)
 {
   for (const auto & thread : threads_) {
     const bool added =
@@ -209,7 +209,7 @@ Interpreter::Next Interpreter::binary_operator(Operator op)
   return replace_top(2, binary(op, left, right));
 }
 
-Value & Interpreter::global_or_local(const Instruction & instruction)
+Value & Interpreter::resolve_variable(const Instruction & instruction)
 {
   Value & global = globals_[instruction.a];
   return global.is(Type::none) ? local(instruction.b) : global;
@@ -238,7 +238,7 @@ Interpreter::Next Interpreter::execute(const Instruction & instruction)
     case Opcode::load_local:
       return load(local(instruction.a), instruction);
     case Opcode::load_global_or_local:
-      return load(global_or_local(instruction), instruction);
+      return load(resolve_variable(instruction), instruction);
     case Opcode::store_global:
       globals_[instruction.a] = pop();
       return Next::proceed;
@@ -246,7 +246,7 @@ Interpreter::Next Interpreter::execute(const Instruction & instruction)
       local(instruction.a) = pop();
       return Next::proceed;
     case Opcode::store_global_or_local:
-      global_or_local(instruction) = pop();
+      resolve_variable(instruction) = pop();
       return Next::proceed;
     case Opcode::binary:
       return binary_operator(static_cast<Operator>(instruction.a));

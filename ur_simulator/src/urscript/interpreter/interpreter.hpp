@@ -33,8 +33,8 @@ class Interpreter {
   void replace_code(const Code & code);
   /// Ends a thread and the threads that it and its children have started.
   void kill_thread(Thread & thread);
-  /// Likewise for threads that functions beyond this number are or have started.
-  void kill_threads_of_extensions(std::size_t program_functions);
+  /// Likewise for threads that run a function with this number or a higher one, or were started by one.
+  void kill_threads_of_added_functions(std::size_t program_functions);
   void remove_ended();
 
   std::vector<std::unique_ptr<Thread>> & threads() { return threads_; }
@@ -83,7 +83,7 @@ class Interpreter {
   Next exit_critical_section();
 
   Value & local(std::uint32_t slot) { return thread_->stack[thread_->frames.back().base + slot]; }
-  Value & global_or_local(const Instruction & instruction);
+  Value & resolve_variable(const Instruction & instruction);
   Value & variable(const Lvalue & lvalue);
   Value pop();
   std::span<Value> top(std::size_t count) { return std::span(thread_->stack).last(count); }

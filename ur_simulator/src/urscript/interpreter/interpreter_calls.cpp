@@ -14,9 +14,9 @@ constexpr std::size_t stack_limit = 100000;
 constexpr double quick_call_limit = 0.5;  // s, of a network call in a secondary program
 
 /// A network call of a secondary program. A robot waits within one control cycle.
-class QuickCall final : public Operation {
+class QuickCall final : public PendingCall {
  public:
-  explicit QuickCall(std::unique_ptr<Operation> call) : call_(std::move(call)) {}
+  explicit QuickCall(std::unique_ptr<PendingCall> call) : call_(std::move(call)) {}
 
   tl::expected<std::optional<Value>, std::string> poll(CallContext & context) override
   {
@@ -32,7 +32,7 @@ class QuickCall final : public Operation {
   void cancel() override { call_->cancel(); }
 
  private:
-  std::unique_ptr<Operation> call_;
+  std::unique_ptr<PendingCall> call_;
   double waited_ = 0.0;
 };
 
@@ -40,7 +40,7 @@ class QuickCall final : public Operation {
 /// network.
 bool limit_wait(Outcome & outcome)
 {
-  auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome);
+  auto * operation = std::get_if<std::unique_ptr<PendingCall>>(&outcome);
   if (operation == nullptr) {
     return !std::holds_alternative<NextCycle>(outcome);
   }
@@ -145,7 +145,7 @@ Interpreter::Next Interpreter::handle_outcome(const std::string & name, Outcome 
   if (auto * next = std::get_if<NextCycle>(&outcome)) {
     thread_->state = ThreadState::next_cycle;
     thread_->pending = std::move(next->value);
-  } else if (auto * operation = std::get_if<std::unique_ptr<Operation>>(&outcome)) {
+  } else if (auto * operation = std::get_if<std::unique_ptr<PendingCall>>(&outcome)) {
     thread_->state = ThreadState::operation;
     thread_->operation = std::move(*operation);
   } else {

@@ -15,7 +15,7 @@ struct Frame {
   std::uint32_t base = 0;       ///< of its locals on the stack
   std::uint32_t return_to = 0;  ///< instruction of the caller
   /// The operation that called the function, which goes on when it returns; else null.
-  std::unique_ptr<Operation> caller = nullptr;
+  std::unique_ptr<PendingCall> caller = nullptr;
 };
 
 enum class ThreadState : std::uint8_t {
@@ -36,7 +36,7 @@ struct Thread {
   std::vector<Value> stack;
   std::vector<Frame> frames;
   Value pending;
-  std::unique_ptr<Operation> operation;
+  std::unique_ptr<PendingCall> operation;
   std::int32_t joined_thread = 0;
   std::uint32_t critical = 0;             ///< nesting depth of critical sections
   std::uint64_t cycles_without_wait = 0;  ///< consecutive cycles in which it used up its share
