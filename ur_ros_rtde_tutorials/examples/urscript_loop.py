@@ -18,8 +18,8 @@ PROGRAM = """def move_down_until_force():
     force = get_tcp_force()[2]
     distance = start[2] - get_actual_tcp_pose()[2]
   end
-  write_output_float_register(12, force)
-  write_output_float_register(13, distance)
+  write_output_float_register(13, force)
+  write_output_float_register(14, distance)
   stopj(5.0)
 end
 """
@@ -28,7 +28,7 @@ end
 def main():
     with Robot() as arm:
         arm.send_script(PROGRAM, timeout=60.0)
-        force, distance = (arm.get_output_double_register(index).value for index in (12, 13))
+        force, distance = (arm.get_output_double_register(index).value for index in (13, 14))
         if abs(force) <= 20.0:
             raise SystemExit("no force of 20 N within 0.3 m")
         print(f"stopped at {force:.1f} N, {distance:.3f} m further down")

@@ -81,15 +81,18 @@ typename rcl_cxx::Service<S>::SharedPtr RobotStateReceiver::serve(const std::str
 Status RobotStateReceiver::freshness() const
 {
   const LinkStatus link = source_().link;
-  const std::string why = link.connected ? "this host or the network is late" : link.error.message;
+  const auto outdated = [&link](const std::string & since) {
+    return failure(
+        ErrorCode::link_lost,
+        fmt::format("no data has been received from the controller {}: {}", since,
+                    link.connected ? "this host or the network is late" : link.error.message.c_str()));
+  };
   if (!received_) {
-    return failure(ErrorCode::link_lost,
-                   fmt::format("no data has been received from the controller yet: {}", why));
+    return outdated("yet");
   }
   const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
   if (!link.connected || age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
-    return failure(ErrorCode::link_lost,
-                   fmt::format("no data has been received from the controller for {:.1f} s: {}", age, why));
+    return outdated(fmt::format("for {:.1f} s", age));
   }
   return {};
 }
