@@ -81,18 +81,16 @@ typename rcl_cxx::Service<S>::SharedPtr RobotStateReceiver::serve(const std::str
 Status RobotStateReceiver::freshness() const
 {
   const LinkStatus link = source_().link;
-  const auto outdated = [&link](const std::string & since) {
-    return failure(
-        ErrorCode::link_lost,
-        fmt::format("no data has been received from the controller {}: {}", since,
-                    link.connected ? "this host or the network is late" : link.error.message.c_str()));
-  };
+  const std::string reason = link.connected ? "this host or the network is late" : link.error.message;
   if (!received_) {
-    return outdated("yet");
+    return failure(ErrorCode::link_lost,
+                   fmt::format("no data has been received from the controller yet: {}", reason));
   }
   const double age = std::chrono::duration<double>(Clock::now() - received_->received).count();
   if (!link.connected || age > std::max(min_outdated_age, outdated_periods / options_.frequency)) {
-    return outdated(fmt::format("for {:.1f} s", age));
+    return failure(
+        ErrorCode::link_lost,
+        fmt::format("no data has been received from the controller for {:.1f} s: {}", age, reason));
   }
   return {};
 }
