@@ -60,6 +60,7 @@ Mode start_force_mode(Run & run, const ForceModeOptions & options)
                                         {options.wrench.begin(), options.wrench.end()}, options.type,
                                         {options.limits.begin(), options.limits.end()}),
                "enter force mode");
+  check_result(run.control()->waitUntilLastCommandExecuted(), "enter force mode");
   return {run, &Control::forceModeStop, "force mode"};
 }
 

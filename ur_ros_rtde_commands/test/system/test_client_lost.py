@@ -116,7 +116,7 @@ def start_mode(robot, simulator, processes):
     def start(*arguments):
         client = processes(Process([sys.executable, "-c", MODE_CLIENT, *arguments]))
         client.wait_for_output("force mode", 30.0)
-        wait_for(lambda: simulator.state()["force_mode"], 10.0, "force mode")  # ur_rtde does not wait until the script has called it
+        assert simulator.state()["force_mode"]
         return client
 
     return start
