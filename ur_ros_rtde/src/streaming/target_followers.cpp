@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/streaming.hpp"
+#include "ur_ros_rtde_robot/motion/setpoint_clock.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 #include "ur_ros_rtde_trajectory/default_speeds.hpp"
 
@@ -114,7 +116,7 @@ class JointFollower : public TargetFollower {
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
-    setpoint_time_ = sample.controller_time / cycle;
+    clock_.emplace(sample, cycle);
     limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
@@ -146,14 +148,12 @@ class JointFollower : public TargetFollower {
 
   Status advance(Run & run, const Sample & sample, double elapsed) override
   {
-    const double paced = sample.servo_pace() * elapsed;
-    const double share = line_.advance(paced);
+    const double share = line_.advance(clock_->advance(sample, elapsed));
     for (std::size_t i = 0; i < at_.size(); ++i) {
       at_[i] = from_[i] + share * (to_[i] - from_[i]);
     }
-    setpoint_time_ += paced / cycle_;
     run.control()->servoJ(to_ur(at_), 0.0, 0.0, cycle_, options_.lookahead_time, options_.gain,
-                          setpoint_time_);
+                          clock_->time());
     return {};
   }
 
@@ -161,7 +161,7 @@ class JointFollower : public TargetFollower {
   const StreamOptions options_;
   ArmLimits limits_{};
   double cycle_ = 0.0;
-  double setpoint_time_ = 0.0;  // cycles; lets the control program bridge late setpoints
+  std::optional<SetpointClock> clock_;  // from begin()
   Vector6 from_{}, to_{}, at_{};
   LineProgress line_;
   LineDuration duration_;

@@ -18,8 +18,6 @@ using trajectory::Trajectory;
 /// s. Lower limit of the time that the arm takes to follow a setpoint.
 constexpr double min_servo_lag = 0.1;
 constexpr double lag_reserve = 0.1;  // s, beyond lookahead_time
-/// Longer gaps between setpoints are not bridged by the control program.
-constexpr double bridged_cycles = ur_rtde::RTDEControlInterface::SERVO_EXTRAPOLATION_CYCLES + 1;
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
 constexpr std::chrono::milliseconds stop_planning_timeout{4};
 constexpr std::chrono::seconds package_timeout{1};
@@ -46,7 +44,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_
       settings_(std::move(settings)),
       on_setpoint_(std::move(on_setpoint)),
       cycle_(run.robot().cycle_time()),
-      setpoint_time_(run.state().controller_time / cycle_),
+      clock_(run.state(), cycle_),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();
@@ -56,7 +54,7 @@ TimeScaling ServoStream::make_time_scaling(double rate, double time) const
 {
   const TimeScaling::Servo servo{.cycle = cycle_,
                                  .lag = std::max(settings_.parameters.lookahead_time, min_servo_lag),
-                                 .bridged_cycles = bridged_cycles,
+                                 .bridged_cycles = SetpointClock::bridged_cycles,
                                  .lead = settings_.parameters.lookahead_time};
   return TimeScaling(servo, rate, time);
 }
@@ -71,7 +69,7 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
   TimeScaling time_scaling = make_time_scaling(requested_rate(state_.sample));
   // The control program extrapolates from the last two setpoints on its way, so both are the end of the plan.
   for (bool at_end = time_scaling.time() >= plan.duration(); !at_end;) {
-    at_end = state_.sample.servo_is_at_end(time_scaling.time() - plan.duration());
+    at_end = clock_.is_at_end(time_scaling.time() - plan.duration());
     const double before = state_.sample.controller_time;
     const auto stop_reason = run_.next(state_.sample);
     add_elapsed(before);
@@ -89,8 +87,7 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
 
 void ServoStream::add_elapsed(double before)
 {
-  elapsed_ = state_.sample.servo_pace() * (state_.sample.controller_time - before);
-  setpoint_time_ += std::clamp(elapsed_ / cycle_, 0.0, bridged_cycles);
+  elapsed_ = clock_.advance(state_.sample, state_.sample.controller_time - before);
 }
 
 Status ServoStream::send(const Trajectory & plan, const Limits & limits, const TimeScaling & time_scaling)
@@ -100,7 +97,7 @@ Status ServoStream::send(const Trajectory & plan, const Limits & limits, const T
   const ServoParameters & servo = settings_.parameters;
   const Joints setpoint = servo_setpoint(scaled(state_.desired, time_scaling), servo, limits);
   std::copy(setpoint.begin(), setpoint.end(), target_.begin());
-  run_.control()->servoJ(target_, 0.0, 0.0, cycle_, servo.lookahead_time, servo.gain, setpoint_time_);
+  run_.control()->servoJ(target_, 0.0, 0.0, cycle_, servo.lookahead_time, servo.gain, clock_.time());
   update_tracking_error();
   if (state_.tracking_error > settings_.max_tracking_error) {
     return failure(ErrorCode::not_reached,

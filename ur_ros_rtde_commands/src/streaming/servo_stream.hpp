@@ -6,6 +6,7 @@
 
 #include "streaming/servo_setpoint.hpp"
 #include "ur_ros_rtde/run.hpp"
+#include "ur_ros_rtde_robot/motion/setpoint_clock.hpp"
 #include "ur_ros_rtde_trajectory/time_scaling.hpp"
 
 namespace ur_ros_rtde {
@@ -70,8 +71,8 @@ class ServoStream {
   const SetpointCallback on_setpoint_;
   const double cycle_;
   StreamState state_;
-  double elapsed_ = 0.0;  // s between the last two setpoints
-  double setpoint_time_;  // cycles
+  double elapsed_ = 0.0;  // s by which the last setpoint advances the plan
+  SetpointClock clock_;
   std::vector<double> target_;
   std::deque<Target> targets_;
   double max_tracking_error_ = 0.0;

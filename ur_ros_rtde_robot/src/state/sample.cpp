@@ -85,18 +85,4 @@ SafetyBits Sample::safety() const
   return {bit(0), bit(1), bit(2), bit(3), bit(4), bit(5), bit(6), bit(7), bit(8), bit(9), bit(10)};
 }
 
-double Sample::servo_pace() const
-{
-  constexpr double reaction = 0.05;  // share of the distance that the target catches up in a cycle
-  constexpr double slowest = 0.5;
-  const double behind = -1.0 - servo_ahead();
-  return behind > 0.0 ? std::max(slowest, 1.0 - reaction * behind) : 1.0;
-}
-
-bool Sample::servo_is_at_end(double overtime) const
-{
-  constexpr double longest_catch_up = 1.0;  // s
-  return overtime >= 0.0 && (servo_pace() == 1.0 || overtime > longest_catch_up);
-}
-
 }  // namespace ur_ros_rtde

@@ -156,7 +156,7 @@ void bind_registers(Binder & bind, int offset)
       "output_int_register_" + std::to_string(2 + offset),
       [](Sample & s, std::int32_t value) { s.async.word = static_cast<std::uint32_t>(value); });
   for (std::size_t i = 0; i < 8; ++i) {
-    const auto number = std::to_string(12 + static_cast<int>(i) + offset);
+    const auto number = std::to_string(Sample::first_output_register + static_cast<int>(i) + offset);
     bind.scalar<std::int32_t>("output_int_register_" + number,
                               [i](Sample & s, std::int32_t value) { s.output_int_registers[i] = value; });
     bind.scalar<double>("output_double_register_" + number,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ur_ros_rtde_robot/motion/setpoint_clock.hpp"
+
 namespace ur_ros_rtde {
 namespace {
 constexpr double max_linear_speed = 3.0;    // m/s
@@ -15,20 +17,17 @@ Outcome servo(Run & run, double duration, const std::function<void(const ServoSt
 {
   const double cycle = run.robot().cycle_time();
   Sample sample = run.state();
-  double setpoint_time = sample.controller_time / cycle;
+  SetpointClock clock(sample, cycle);
   bool at_end = false;
   for (double time = 0.0; !at_end;) {
-    at_end = sample.servo_is_at_end(time - duration);
+    at_end = clock.is_at_end(time - duration);
     const double before = sample.controller_time;
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    const double elapsed =
-        sample.servo_pace() * std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle);
-    time += elapsed;
-    setpoint_time += elapsed / cycle;
+    time += clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
     run.progress(smooth_step(std::min(time / duration, 1.0)));
-    send({run.progress(), cycle, setpoint_time});
+    send({run.progress(), cycle, clock.time()});
   }
   return finish_servo(run, wait_for_arrival(), deceleration);
 }

@@ -7,11 +7,16 @@ namespace ur_ros_rtde {
 /// `registers`: the member of Sample with the output registers 12 to 19 of one type.
 template <auto registers>
 class GetOutputRegister : public QueryCommand<ur_ros_rtde_msgs::action::GetRegister> {
-  void check(const Goal & goal, Check & check) const override { check.in_range("index", goal.index, 12, 19); }
+  static constexpr int first = Sample::first_output_register;
+
+  void check(const Goal & goal, Check & check) const override
+  {
+    check.in_range("index", goal.index, first, first + 7);
+  }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.result().value = (run.state().*registers)[goal.index - 12U];
+    run.result().value = (run.state().*registers)[static_cast<std::size_t>(goal.index - first)];
     return Outcome::success();
   }
 };

@@ -134,12 +134,8 @@ struct Sample {
   /// See script_extension.hpp: 0 when no extension runs, its number when it has finished.
   double extension_acknowledgement() const { return output_double_registers[18 - first_output_register]; }
   /// Time of servoJ's target after that of the newest setpoint, in cycles; below -1 if setpoints came in a
-  /// bunch, for example from a busy host. The target is never faster than the setpoints, so it stays behind.
+  /// bunch: see SetpointClock.
   double servo_ahead() const { return output_double_registers[12 - first_output_register]; }
-  /// Share of the elapsed time by which the next setpoint may advance, so that the target catches up.
-  double servo_pace() const;
-  /// Whether the target follows only the end of a plan, which is over since `overtime` s (negative: not yet).
-  bool servo_is_at_end(double overtime) const;
   bool is_program_running() const { return runtime_state == RuntimeState::playing; }
 };
 
