@@ -17,7 +17,7 @@ using trajectory::Trajectory;
 
 /// s. Lower limit of the time that the arm takes to follow a setpoint.
 constexpr double min_servo_lag = 0.1;
-constexpr double lag_reserve = 0.1;  // s, beyond lookahead_time
+constexpr double lag_reserve = 0.1;    // s, beyond lookahead_time
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
 constexpr std::chrono::milliseconds stop_planning_timeout{4};
 constexpr std::chrono::seconds package_timeout{1};

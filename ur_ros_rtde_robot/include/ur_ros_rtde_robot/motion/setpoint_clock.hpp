@@ -17,8 +17,8 @@ class SetpointClock {
   /// `cycle` of the controller, s.
   SetpointClock(const Sample & now, double cycle) : cycle_(cycle), time_(now.controller_time / cycle) {}
 
-  /// Advances to a setpoint that is due `elapsed` s (controller time) after the previous one. Returns the part
-  /// of `elapsed` by which the motion may go on, s.
+  /// Advances to a setpoint that is due `elapsed` s (controller time) after the previous one. Returns the
+  /// part of `elapsed` by which the motion may go on, s.
   double advance(const Sample & now, double elapsed);
   /// Of the setpoint that is due now, in cycles of the controller.
   double time() const { return time_; }
