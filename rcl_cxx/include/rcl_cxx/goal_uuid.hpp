@@ -21,7 +21,7 @@ struct GoalUUID {
   auto operator<=>(const GoalUUID &) const = default;
 };
 
-/// The numbers are those of action_msgs/msg/GoalStatus.
+/// The values match action_msgs/msg/GoalStatus.
 enum class GoalStatus : std::int8_t {
   unknown = 0,
   accepted = 1,

@@ -36,9 +36,26 @@ constexpr VectorColumn vectors[] = {
     {"actual_TCP_force", &Sample::actual_tcp_force},
 };
 
-constexpr const char * numbers[] = {"robot_mode",    "safety_mode",   "safety_status_bits",
-                                    "runtime_state", "speed_scaling", "target_speed_fraction",
-                                    "payload"};
+struct NumberColumn {
+  const char * name;
+  double (*value)(const Sample & sample);
+};
+
+template <auto member>
+double number(const Sample & sample)
+{
+  return static_cast<double>(sample.*member);
+}
+
+constexpr NumberColumn numbers[] = {
+    {"robot_mode", number<&Sample::robot_mode>},
+    {"safety_mode", number<&Sample::safety_mode>},
+    {"safety_status_bits", number<&Sample::safety_status_bits>},
+    {"runtime_state", number<&Sample::runtime_state>},
+    {"speed_scaling", number<&Sample::speed_scaling>},
+    {"target_speed_fraction", number<&Sample::target_speed_fraction>},
+    {"payload", number<&Sample::payload>},
+};
 
 bool is_recorded(SafetyMode mode)
 {
@@ -81,7 +98,9 @@ std::vector<std::string> StopRecorder::column_names()
       names.push_back(fmt::format("{}_{}", name, i));
     }
   }
-  names.insert(names.end(), std::begin(numbers), std::end(numbers));
+  for (const auto & [name, value] : numbers) {
+    names.emplace_back(name);
+  }
   return names;
 }
 
@@ -94,11 +113,8 @@ StopRecorder::Row StopRecorder::row_of(const Sample & sample)
   for (const auto & [name, values] : vectors) {
     next = std::copy((sample.*values).begin(), (sample.*values).end(), next);
   }
-  for (const double value :
-       {static_cast<double>(sample.robot_mode), static_cast<double>(sample.safety_mode),
-        static_cast<double>(sample.safety_status_bits), static_cast<double>(sample.runtime_state),
-        sample.speed_scaling, sample.target_speed_fraction, sample.payload}) {
-    *next++ = value;
+  for (const auto & [name, value] : numbers) {
+    *next++ = value(sample);
   }
   return row;
 }

@@ -11,7 +11,7 @@ namespace ur_ros_rtde::trajectory {
 
 struct Motion;
 
-/// Setpoint of the joints at a time.
+/// Joint setpoint at one instant of a trajectory.
 struct Point {
   Joints position = Joints::Zero();
   Joints velocity = Joints::Zero();
@@ -45,8 +45,8 @@ class Trajectory {
   std::size_t waypoint_at(double time) const;
 
   /// Follows this trajectory until `time`, then brakes to rest along the same path as fast as `limits` (those
-  /// it was planned with) allow. If the motion already brakes with all that the limits allow, additional
-  /// braking starts when there is margin. Both trajectories share their time axis, so it is possible to
+  /// it was planned with) allow. If the motion is already decelerating at the limits, braking harder starts
+  /// once there is headroom. Both trajectories share their time axis, so it is possible to
   /// switch at any time up to `time`. Returns this trajectory if no stop ends earlier than the plan itself,
   /// and nothing if the search, which takes about a millisecond, has not ended by `deadline`.
   std::optional<Trajectory> stop_from(double time, const Limits & limits,

@@ -20,7 +20,7 @@ constexpr std::size_t min_blend_intervals = 6;  // intervals in a blend
 constexpr double max_rough_stations = 20000.0;
 constexpr double max_adaptive_stations = 30000.0;
 constexpr double max_rough_factor = 8.0;         // longest step of the rough grid, in fine steps
-constexpr double min_rough_stations = 300.0;     // on the rough grid
+constexpr double min_rough_stations = 300.0;
 constexpr double min_stations_per_piece = 12.0;  // with fewer, an adaptive grid has no advantage
 
 // Accepted slowdown of the motion instead of another solution, by the number of previous refinements.
@@ -47,7 +47,7 @@ class JerkLimitedTiming {
   bool can_adapt_grid() const { return has_long_pieces_ && rough_step_ > step_; }
 
   // Solves on a rough grid, then on a grid that is fine only where the jerk changes. Returns false if the
-  // result exceeds a limit by much.
+  // result exceeds a limit significantly.
   bool solve_with_adaptive_grid()
   {
     set_uniform_grid(std::max(rough_step_, duration_ / max_rough_stations));
@@ -103,7 +103,7 @@ class JerkLimitedTiming {
   }
 
   // Solves on the grid. The solution replaces that in `motion`. `gaps`: optimality gaps of the successive
-  // speed splines. `near_solution`: of the start.
+  // speed splines. `near_solution`: the start is close to the solution.
   Profile solve(InitialTiming start, double initial_gap, std::initializer_list<double> gaps,
                 bool near_solution = false)
   {
@@ -176,7 +176,7 @@ class JerkLimitedTiming {
   double duration_ = 0.0;         // s, of the estimate
   double step_ = 0.0;             // s, between stations where the jerk changes
   double rough_step_ = 0.0;       // s, between the stations of the rough grid
-  bool has_long_pieces_ = false;  // compared with the step
+  bool has_long_pieces_ = false;  // pieces that are long compared with the step
   double long_interval_ = std::numeric_limits<double>::infinity();  // s
   Grid grid_;
   LimitFractions fractions_;

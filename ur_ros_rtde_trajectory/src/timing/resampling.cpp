@@ -78,10 +78,10 @@ std::vector<double> adaptive_spacing(const Grid & grid, const Profile & profile,
                                      double step, double max_stations)
 {
   constexpr double max_factor = 12.0;  // longest spacing, in steps
-  constexpr double growth = 0.5;       // of the spacing per time
+  constexpr double growth = 0.5;       // increase of the spacing per elapsed time
   const std::size_t count = grid.intervals();
   std::vector<double> spacing(count, max_factor * step);
-  // `jump`: of the jerk along the path at station m, as a fraction of its limit.
+  // `jump`: the jump of the jerk along the path at station m, as a fraction of the jerk limit.
   const auto add_jump = [&](std::size_t m, double jump) {
     const double allowed = step / std::sqrt(std::clamp(jump, 1.0 / (max_factor * max_factor), 1.0));
     spacing[std::max<std::size_t>(m, 1) - 1] = std::min(spacing[std::max<std::size_t>(m, 1) - 1], allowed);

@@ -1,0 +1,212 @@
+// Who may move the arm, what moves it, and how it is stopped.
+#include <utility>
+
+#include "motion/motion_blocker.hpp"
+#include "robot_impl.hpp"
+#include "ur_ros_rtde_robot/robot.hpp"
+
+namespace ur_ros_rtde {
+
+Error stopped_by_the_driver()
+{
+  return {ErrorCode::preempted, "the arm was stopped"};
+}
+
+Expected<Lease> Robot::acquire(Claim claim)
+{
+  const Claim asked = claim;
+  return impl_->arbiter.acquire(std::move(claim), [&] { return impl_->admit(asked); });
+}
+
+Expected<Lease> Robot::acquire_preempting(Claim claim, std::chrono::milliseconds timeout,
+                                          const std::stop_token & stop)
+{
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const auto left = [&] {
+    return std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+  };
+  while (true) {
+    auto lease = impl_->arbiter.acquire_preempting(claim, [&] { return impl_->admit(claim); }, left(), stop);
+    if (lease || !impl_->stopper.wait_until_idle(deadline, stop) || left().count() <= 0) {
+      return lease;
+    }
+  }
+}
+
+Status Robot::may_use(const Claim & claim) const
+{
+  return impl_->may_use(claim);
+}
+
+std::optional<Claim> Robot::holder(Resource resource) const
+{
+  const auto permit = impl_->arbiter.holder(resource);
+  return permit ? std::optional(permit->claim()) : std::nullopt;
+}
+
+Generation Robot::generation() const
+{
+  return impl_->generation();
+}
+
+Status Robot::is_current(const Generation & generation) const
+{
+  const Generation now = impl_->generation();
+  if (now == generation) {
+    return {};
+  }
+  if (now.link != generation.link) {
+    return failure(ErrorCode::link_lost, connection_replaced);
+  }
+  if (now.ends != generation.ends) {
+    return tl::unexpected(impl_->program_ended_error());
+  }
+  return failure(ErrorCode::program_stopped,
+                 "the control program was replaced or started again; the motion is not resumed");
+}
+
+Status Robot::may_continue(const Lease & lease) const
+{
+  if (!lease) {
+    return failure(ErrorCode::exception, "there is no lease");
+  }
+  if (auto why = lease.permit_->revoked()) {
+    return tl::unexpected(*std::move(why));
+  }
+  return is_valid(lease);
+}
+
+Status Robot::is_valid(const Lease & lease) const
+{
+  if (Status possible = motion_possible(); !possible) {
+    return possible;  // names the cause better than the change of the generation that follows from it
+  }
+  return is_current(lease.permit_->generation());
+}
+
+std::function<Status()> Robot::permission(const Lease & lease) const
+{
+  return [this, permit = lease.permit_]() -> Status {
+    if (!permit) {
+      return failure(ErrorCode::exception, "there is no lease");
+    }
+    if (auto why = permit->revoked()) {
+      return tl::unexpected(*std::move(why));
+    }
+    return is_current(permit->generation());
+  };
+}
+
+Status Robot::motion_possible() const
+{
+  return impl_->motion_possible();
+}
+
+MotionMark Robot::mark_motion() const
+{
+  const auto view = impl_->tracker.view();
+  return {view.async, view.program};
+}
+
+MotionProgress Robot::motion_progress(const MotionMark & mark) const
+{
+  const auto view = impl_->tracker.view();
+  MotionProgress result;
+  result.started = !(view.async == mark.async);
+  result.running = view.async.running();
+  result.at_rest = view.at_rest;
+  result.program_ended = view.program != mark.program;
+  result.progress = view.async.running() ? view.async.progress() : 0;
+  return result;
+}
+
+bool Robot::is_moving() const
+{
+  const auto view = impl_->tracker.view();
+  return !view.at_rest || view.operating();
+}
+
+Activities Robot::activities() const
+{
+  return impl_->activities.now();
+}
+
+bool Robot::is_at_rest_except(Activities modes) const
+{
+  const Activities active = activities();
+  return active.without(modes).empty() && (active.contains_any(modes) || !is_moving());
+}
+
+Expected<StopReport> Robot::stop_motion(const StopOptions & options, const Error & why)
+{
+  return begin_stop(options, why).get();
+}
+
+std::shared_ptr<void> Robot::hold_program()
+{
+  return impl_->manager.hold();
+}
+
+std::shared_future<Expected<StopReport>> Robot::begin_stop(const StopOptions & options, const Error & why)
+{
+  return impl_->stopper.begin(options, why);
+}
+
+void Robot::request_stop(const Lease & lease, const StopOptions & options, const Error & why,
+                         std::chrono::milliseconds braking_timeout)
+{
+  if (lease && moves_arm(lease.permit_->claim().resource)) {
+    impl_->stopper.request(lease.permit_, options, why, braking_timeout);
+  }
+}
+
+Expected<StopReport> Robot::end_motion(const Lease & lease, const StopOptions & options)
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return StopReport{};
+  }
+  return impl_->stopper.end(*lease.permit_, options).get();
+}
+
+Expected<StopReport> Robot::pause_motion(const Lease & lease, const StopOptions & options)
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return StopReport{};
+  }
+  return impl_->stopper.pause(*lease.permit_, options).get();
+}
+
+bool Robot::is_stopping() const
+{
+  return impl_->stopper.is_stopping();
+}
+
+bool Robot::wait_for_stopped_holders(std::chrono::milliseconds timeout) const
+{
+  return impl_->arbiter.wait_for_revoked_holders(timeout);
+}
+
+bool Robot::is_stopped(const Lease & lease) const
+{
+  if (!lease || !moves_arm(lease.permit_->claim().resource)) {
+    return true;
+  }
+  return lease.permit_->revoked() && !is_stopping();
+}
+
+Robot::Braking::Braking(const Lease & lease) : permit_(lease.permit_)
+{
+  permit_->set_brakes_itself(true);
+}
+
+Robot::Braking::~Braking()
+{
+  permit_->set_brakes_itself(false);
+}
+
+void Robot::Braking::sent() const
+{
+  permit_->set_braking();
+}
+
+}  // namespace ur_ros_rtde
