@@ -1,6 +1,8 @@
 #include "motion/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "path/quintic_hermite.hpp"
 
@@ -21,6 +23,15 @@ std::size_t Motion::piece_at(double time) const
       std::upper_bound(timing.begin(), timing.end(), time,
                        [](double value, const TimingLawPiece & piece) { return value < piece.start; });
   return after == timing.begin() ? 0 : static_cast<std::size_t>(after - timing.begin()) - 1;
+}
+
+bool Motion::is_finite(std::size_t first) const
+{
+  const auto begin = timing.begin() + static_cast<std::ptrdiff_t>(first);
+  return std::all_of(begin, timing.end(), [](const TimingLawPiece & piece) {
+    return std::isfinite(piece.end()) &&
+           std::all_of(std::begin(piece.c), std::end(piece.c), [](double c) { return std::isfinite(c); });
+  });
 }
 
 void Motion::append(const Grid & grid, const Profile & profile, bool constant_acceleration)

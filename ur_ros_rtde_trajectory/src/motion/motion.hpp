@@ -31,6 +31,8 @@ struct Motion {
 
   double duration() const { return timing.empty() ? 0.0 : timing.back().end(); }
   std::size_t piece_at(double time) const;
+  /// Whether all numbers of the pieces from `first` on are finite.
+  bool is_finite(std::size_t first = 0) const;
 
   /// Appends the solution of a solver. `constant_acceleration`: the profile is that of TOPP-RA.
   void append(const Grid & grid, const Profile & profile, bool constant_acceleration);

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/topp_ra.hpp"
 
 namespace ur_ros_rtde::trajectory {
 
-JerkSolver::JerkSolver(const Limits & limits)
+JerkSolver::JerkSolver(const Limits & limits, SearchLimit search_limit)
     : limits_(limits),
+      search_limit_(std::move(search_limit)),
       inverse_acceleration_(limits.acceleration.inverse()),
       inverse_jerk_(limits.jerk.inverse())
 {
@@ -335,6 +337,9 @@ void JerkSolver::iterate(int steps, double gap_limit)
   double product = mean_complementarity();
   std::vector<double> last_w;
   for (int step = 0; step < steps && !(settled && product * rows_ < gap_limit * before); ++step) {
+    if (has_to_end()) {
+      return;
+    }
     assemble(reduction * product);
     if (!system_.solve()) {
       return;  // the current iterate is feasible

@@ -10,6 +10,7 @@
 #include "motion/grid.hpp"
 #include "solver/constraint_block.hpp"
 #include "solver/pentadiagonal.hpp"
+#include "solver/search_limit.hpp"
 #include "solver/speed_spline.hpp"
 
 namespace ur_ros_rtde::trajectory {
@@ -44,7 +45,7 @@ struct LimitFractions {
 /// line, the rows of all joints are proportional, so a single row replaces them.
 class JerkSolver {
  public:
-  explicit JerkSolver(const Limits & limits);
+  explicit JerkSolver(const Limits & limits, SearchLimit search_limit = {});
 
   /// Sets the problem. `grid` and `limit_fractions` must outlive the solution; the fractions are read when a
   /// spline is set. `long_interval`: curved intervals of a longer duration (s, at the start) keep the
@@ -62,8 +63,9 @@ class JerkSolver {
   /// Continues with another spline on the same grid. Keeps coefficients and multipliers.
   void set_spline(const SpeedSpline & spline);
   /// Runs up to `steps` iterations, until the estimated loss of time is below `gap`, a fraction of the
-  /// duration.
+  /// duration, or the search has to end.
   void iterate(int steps, double gap);
+  bool has_to_end() const { return search_limit_.is_reached(); }
 
   const std::vector<double> & coefficients() const { return w_; }
   double gap() const;
@@ -106,6 +108,7 @@ class JerkSolver {
   double advance(const std::vector<double> & dw, const StepLengths & lengths);
 
   Limits limits_;
+  SearchLimit search_limit_;
   Joints inverse_acceleration_, inverse_jerk_;
   const Grid * grid_ = nullptr;
   const LimitFractions * limit_fractions_ = nullptr;

@@ -19,7 +19,7 @@ constexpr double min_station_step = 0.002;      // s, between stations
 constexpr std::size_t min_blend_intervals = 6;  // intervals in a blend
 constexpr double max_rough_stations = 20000.0;
 constexpr double max_adaptive_stations = 30000.0;
-constexpr double max_rough_factor = 8.0;         // longest step of the rough grid, in fine steps
+constexpr double max_rough_factor = 8.0;  // longest step of the rough grid, in fine steps
 constexpr double min_rough_stations = 300.0;
 constexpr double min_stations_per_piece = 12.0;  // with fewer, an adaptive grid has no advantage
 
@@ -85,10 +85,14 @@ class JerkLimitedTiming {
   {
     const InitialTiming start = initial_timing(grid_, limits_, solver_);
     Profile profile = solve(start, 4.0, gaps);
+    if (!motion_.is_finite(begin_)) {
+      replace_motion(start.profile);
+      return start.profile;
+    }
     if (auto lifted = lift_dips(grid_, profile, start.highest_speed)) {
       const double before = motion_.duration();
       Profile other = solve(initial_timing_from(grid_, std::move(*lifted)), 4.0, gaps);
-      if (motion_.duration() < before) {
+      if (motion_.is_finite(begin_) && motion_.duration() < before) {
         return other;
       }
       replace_motion(profile);
@@ -124,21 +128,31 @@ class JerkLimitedTiming {
   }
 
   // Subdivides intervals and tightens limits where the solution exceeds the limits between stations, and
-  // solves again with higher accuracy. Returns the factor by which the motion still has to be slowed down.
+  // solves again with higher accuracy. If that diverges, keeps the last finite solution. Returns the factor
+  // by which the motion still has to be slowed down.
   double refine()
   {
+    std::vector<TimingLawPiece> last_finite;
+    double slowdown = std::numeric_limits<double>::infinity();
     for (std::size_t round = 0;; ++round) {
+      if (!motion_.is_finite(begin_)) {
+        if (round > 0) {
+          motion_.timing = std::move(last_finite);
+        }
+        return slowdown;
+      }
       const std::vector<IntervalUtilization> use = interval_utilization(motion_, begin_, limits_);
-      double slowdown = std::isfinite(motion_.duration()) ? 1.0 : std::numeric_limits<double>::infinity();
+      slowdown = 1.0;
       bool any_too_long = false;
       for (const IntervalUtilization & interval : use) {
         slowdown = std::max(slowdown, interval.slowdown());
         any_too_long = any_too_long || interval.too_long;
       }
       const bool accepted = round > 0 && slowdown <= 1.0 + accepted_slowdown[std::min(round, max_rounds - 1)];
-      if (accepted || round == max_rounds || !std::isfinite(slowdown)) {
+      if (accepted || round == max_rounds || !std::isfinite(slowdown) || solver_.has_to_end()) {
         return slowdown;
       }
+      last_finite = motion_.timing;
       tighten_limits(use, fractions_);
       Profile start;
       if (any_too_long) {

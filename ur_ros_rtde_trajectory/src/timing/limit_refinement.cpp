@@ -67,6 +67,26 @@ void tighten_limits(const std::vector<IntervalUtilization> & use, LimitFractions
   }
 }
 
+// Positions on the path that divide an interval into parts of the same duration. Only the whole interval if
+// one of them would be empty: the solver divides by the lengths.
+std::vector<double> divide(const TimingLawPiece & piece, double from, double to, int parts)
+{
+  constexpr double shortest = 1e-3;  // of the interval
+  std::vector<double> ends;
+  for (int k = 1; k < parts; ++k) {
+    ends.push_back(piece.at(piece.start + piece.duration * k / parts).u);
+  }
+  ends.push_back(to);
+  double previous = from;
+  for (const double end : ends) {
+    if (!(end - previous > shortest * (to - from))) {
+      return {to};
+    }
+    previous = end;
+  }
+  return ends;
+}
+
 ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid & grid,
                           const std::vector<IntervalUtilization> & use, LimitFractions & fractions)
 {
@@ -79,13 +99,14 @@ ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid &
   refined.acceleration.push_back(1.0);
   for (std::size_t i = 0; i < grid.intervals(); ++i) {
     const TimingLawPiece & piece = motion.timing[begin + i];
-    const int parts = !use[i].too_long ? 1 : std::max(use[i].acceleration, use[i].jerk) < 1.3 ? 2 : 3;
+    const int wanted = !use[i].too_long ? 1 : std::max(use[i].acceleration, use[i].jerk) < 1.3 ? 2 : 3;
+    const std::vector<double> ends = divide(piece, grid.begin[i], grid.end[i], wanted);
+    const double parts = static_cast<double>(ends.size());
     double from = grid.begin[i];
-    for (int k = 1; k <= parts; ++k) {
-      const bool last = k == parts;
-      const PathState state = piece.at(piece.start + piece.duration * k / parts);
-      const double to = last ? grid.end[i] : std::clamp(state.u, from, grid.end[i]);
-      result.grid.add(*motion.path, grid.piece[i], from, to);
+    for (std::size_t k = 1; k <= ends.size(); ++k) {
+      const bool last = k == ends.size();
+      const PathState state = piece.at(piece.start + piece.duration * static_cast<double>(k) / parts);
+      result.grid.add(*motion.path, grid.piece[i], from, ends[k - 1]);
       result.profile.v.push_back(state.v);
       result.profile.alpha.push_back(state.a);
       result.profile.time.push_back(piece.duration / parts);
@@ -93,7 +114,7 @@ ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid &
       refined.acceleration.push_back(last ? fractions.acceleration[i + 1] : 1.0);
       refined.jerk.push_back(use[i].too_long ? 1.0 : fractions.jerk[i]);
       refined.binding_joints.push_back(fractions.binding_joints[i]);
-      from = to;
+      from = ends[k - 1];
     }
   }
   result.profile.v.back() = result.profile.alpha.back() = 0.0;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "ur_ros_rtde_trajectory/arm_limits.hpp"
+
 namespace ur_ros_rtde::trajectory::test {
 namespace {
 
@@ -101,6 +103,102 @@ RandomPath random_path(unsigned seed)
     path.options.blend_tolerance = std::pow(10.0, between(random, -3.0, -0.5));
   }
   return path;
+}
+
+namespace {
+
+using Source = std::mt19937_64;
+
+bool one_in(Source & random, unsigned long count)
+{
+  return random() % count == 0;
+}
+
+double uniform(Source & random, double low, double high)
+{
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+// All orders of magnitude are equally likely.
+double any_size(Source & random, double low, double high)
+{
+  return std::exp(uniform(random, std::log(low), std::log(high)));
+}
+
+Joints any_limits(Source & random, double highest)
+{
+  if (one_in(random, 2)) {
+    return Joints::Constant(any_size(random, 1e-2, highest));
+  }
+  Joints limits;
+  for (double & limit : limits) {
+    limit = any_size(random, 1e-2, highest);
+  }
+  return limits;
+}
+
+Limits extreme_limits(Source & random)
+{
+  static const std::string models[]{"ur3e", "ur5e", "ur10e", "ur20", "ur30", "ur5"};
+  Limits limits = default_speed_limits(make_limits(arm_limits(models[random() % std::size(models)]).value()));
+  if (one_in(random, 2)) {
+    limits.velocity = limits.velocity.min(any_limits(random, 10.0));
+  }
+  if (one_in(random, 2)) {
+    limits.acceleration = any_limits(random, 40.0);
+  }
+  if (one_in(random, 2)) {
+    limits.jerk = any_limits(random, 1e4);
+  }
+  return limits;
+}
+
+Joints next_waypoint(Source & random, const std::vector<Joints> & points, double scale)
+{
+  Joints next = points.back();
+  const unsigned long kind = random() % 6;
+  if (kind == 0) {  // nearly the same point
+    for (double & value : next) {
+      value += any_size(random, 1e-10, 1e-3) * (one_in(random, 2) ? 1.0 : -1.0);
+    }
+  } else if (kind == 1) {  // one joint
+    next[static_cast<int>(random() % joint_count)] += scale * uniform(random, -1.0, 1.0);
+  } else if (kind == 2 && points.size() > 1) {  // back
+    next = points[points.size() - 2];
+  } else if (kind == 3 && points.size() > 1) {  // straight on
+    next += (next - points[points.size() - 2]) * uniform(random, 0.1, 1.0);
+  } else {
+    for (double & value : next) {
+      value += scale * uniform(random, -1.0, 1.0);
+    }
+  }
+  return (next.abs() < 3.0).all() ? next : Joints(0.9 * points.back());
+}
+
+}  // namespace
+
+RandomPlan extreme_plan(unsigned long seed)
+{
+  Source random(seed);
+  RandomPlan plan;
+  plan.limits = extreme_limits(random);
+  const std::size_t count = 2 + random() % (one_in(random, 40) ? 119 : 11);
+  const double scale = any_size(random, 1e-3, 1.0);
+  plan.waypoints.emplace_back();
+  for (double & value : plan.waypoints.back()) {
+    value = uniform(random, -2.5, 2.5);
+  }
+  while (plan.waypoints.size() < count) {
+    plan.waypoints.push_back(next_waypoint(random, plan.waypoints, scale));
+  }
+  plan.options.blend_tolerance = one_in(random, 4) ? 0.0 : any_size(random, 1e-7, 1.0);
+  if (one_in(random, 2)) {
+    plan.options.corner_angle = uniform(random, 0.0, 3.14);
+  }
+  if (one_in(random, 4)) {
+    plan.options.speed_fraction = any_size(random, 1e-2, 1.0);
+  }
+  return plan;
 }
 
 Limits random_limits(unsigned seed, bool with_jerk)

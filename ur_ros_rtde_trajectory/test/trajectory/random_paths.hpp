@@ -19,6 +19,16 @@ struct RandomPath {
 /// waypoints; with and without blending.
 RandomPath random_path(unsigned seed);
 
+struct RandomPlan {
+  std::vector<Joints> waypoints;
+  Limits limits;
+  PathOptions options;
+};
+
+/// Anything within the ranges of the action execute_trajectory, deterministic for each seed: tiny and huge
+/// limits and blends, near-duplicates, reversals, lines.
+RandomPlan extreme_plan(unsigned long seed);
+
 /// Velocities of the UR models in turn; different accelerations and jerks in every joint.
 Limits random_limits(unsigned seed, bool with_jerk);
 
