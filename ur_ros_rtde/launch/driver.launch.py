@@ -5,7 +5,7 @@ import pathlib
 
 from launch.actions import EmitEvent, ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessExit, OnShutdown
-from launch.events import matches_action
+from launch.events import Shutdown, matches_action
 from launch.events.process import ShutdownProcess
 from launch_ros.actions import Node
 from launch_ros.substitutions import ExecutableInPackage
@@ -51,10 +51,12 @@ def driver(options, parameters):
 
 
 def simulator(options, nodes):
-    """Returns the process of the simulated robot, which ends together with the node that commands it."""
+    """Returns the process of the simulated robot. It ends together with the node that commands it, and its end ends the launch."""
     # ExecuteProcess instead of Node, because the simulator does not accept --ros-args.
     process = ExecuteProcess(cmd=[ExecutableInPackage(package="ur_simulator", executable="ur_simulator"), "--address",
                                   options["sim_ip"], "--model", options["ur_type"] or DEFAULT_SIMULATED_MODEL], output="screen")
     commander = nodes[0] if options["one_process"] else nodes[NODES.index("command_server")]
     end = EmitEvent(event=ShutdownProcess(process_matcher=matches_action(process)))
-    return [process, RegisterEventHandler(OnProcessExit(target_action=commander, on_exit=[end]))]
+    failed = EmitEvent(event=Shutdown(reason="the simulated robot has ended"))
+    return [process, RegisterEventHandler(OnProcessExit(target_action=commander, on_exit=[end])),
+            RegisterEventHandler(OnProcessExit(target_action=process, on_exit=[failed]))]

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <rcl_cxx/error.hpp>
 
 #include "plugins/plugin_index.hpp"
 #include "plugins/plugin_selection.hpp"
@@ -159,14 +160,24 @@ TEST_F(PluginSelectionTest, SelectsChosenPluginsWithoutTheBlacklist)
   EXPECT_EQ(select({"a", "b"}, {"b"}), (Names{"a"}));
 }
 
-TEST_F(PluginSelectionTest, ReportsUnknownNamesAndTheMostSimilarOne)
+TEST_F(PluginSelectionTest, RejectsUnknownNamesWithASimilarOne)
 {
   all_.push_back(entry("move_joint", "MoveJoint"));
-  EXPECT_EQ(select({"a", "mov_joints"}, {"cd"}), (Names{"a"}));
-  ASSERT_EQ(problems_.size(), 2U);
-  EXPECT_TRUE(mentions(problems_[0], {"plugins ", "\"mov_joints\"", "nearest is \"move_joint\""}))
-      << problems_[0];
-  EXPECT_TRUE(mentions(problems_[1], {"plugins_blacklist", "\"cd\"", "nearest is \"c\""})) << problems_[1];
+  try {
+    select({"a", "mov_joints", "nosuch"}, {});
+    ADD_FAILURE();
+  } catch (const rcl_cxx::ParameterError & error) {
+    EXPECT_EQ(error.parameter(), "plugins");
+    EXPECT_TRUE(mentions(error.what(), {"\"mov_joints\"", "did you mean \"move_joint\"?", "\"nosuch\""}))
+        << error.what();
+  }
+}
+
+TEST_F(PluginSelectionTest, ReportsUnknownNamesInTheBlacklist)
+{
+  EXPECT_EQ(select({"a"}, {"cd"}), (Names{"a"}));
+  ASSERT_EQ(problems_.size(), 1U);
+  EXPECT_TRUE(mentions(problems_[0], {"plugins_blacklist", "\"cd\"", "did you mean \"c\"?"})) << problems_[0];
 }
 
 TEST_F(PluginSelectionTest, AcceptsNamesOfTheOtherServer)
@@ -177,11 +188,10 @@ TEST_F(PluginSelectionTest, AcceptsNamesOfTheOtherServer)
   EXPECT_TRUE(problems_.empty()) << problems_[0];
 }
 
-TEST_F(PluginSelectionTest, ReportsUnknownNamesWithoutAnyPlugin)
+TEST_F(PluginSelectionTest, RejectsUnknownNamesWithoutAnyPlugin)
 {
   all_.clear();
-  EXPECT_EQ(select({"a"}, {}), (Names{}));
-  ASSERT_EQ(problems_.size(), 1U);
+  EXPECT_THROW(select({"a"}, {}), rcl_cxx::ParameterError);
 }
 
 TEST_F(PluginSelectionTest, KeepsTheFirstOfTwoWithTheSameName)

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "nodes/similar_names.hpp"
+#include "plugins/similar_names.hpp"
 
 namespace ur_ros_rtde {
 namespace {

@@ -2,6 +2,7 @@
 
 import copy
 import difflib
+import re
 import tempfile
 from dataclasses import dataclass
 from typing import Any, Collection, Dict, Iterable, List, Optional, Tuple
@@ -13,6 +14,13 @@ MODELS = ("ur3", "ur5", "ur10", "ur3e", "ur5e", "ur7e", "ur10e", "ur12e", "ur16e
 DEFAULT_SIMULATED_MODEL = "ur10e"  # used if ur_type is empty
 QOS = ("default", "reliable", "best_effort", "sensor_data", "latched", "transient_local", "services_default", "parameters",
        "system_default")
+
+
+# (regular expression, what it allows)
+NAME_PART = (r"[A-Za-z0-9_/]*", "letters, digits, _ and /")
+NAMESPACE = (r"(/?[A-Za-z_][A-Za-z0-9_]*)*", "names of letters, digits and _ that begin with no digit, separated by /")
+_BYTE = r"(25[0-5]|2[0-4]\d|1?\d?\d)"
+LOOPBACK = (rf"127(\.{_BYTE}){{3}}", "a loopback address: 127.0.0.1, 127.0.0.2, ...")
 
 
 class ArgumentError(RuntimeError):
@@ -31,6 +39,7 @@ class Argument:
     description: str
     choices: Tuple[str, ...] = ()
     limits: Optional[Tuple[float, float]] = None
+    pattern: Tuple[str, str] = (".*", "")
 
     @property
     def default_text(self) -> Optional[str]:
@@ -58,7 +67,12 @@ class Argument:
             return text == "true"
         if isinstance(self.default, (int, float)):
             return self._number(text)
-        return self._strings(text) if isinstance(self.default, tuple) else text
+        if isinstance(self.default, tuple):
+            return self._strings(text)
+        expression, allowed = self.pattern
+        if not re.fullmatch(expression, text):
+            raise self._error(text, allowed)
+        return text
 
     def _number(self, text: str) -> float:
         kind = type(self.default)
@@ -91,7 +105,7 @@ class Argument:
 PARAMETERS = (
     Argument("robot_ip", "", "Address or host name of the robot controller. Ignored with sim:=true, which uses sim_ip."),
     Argument("ur_type", "", "Model of the arm. If empty, it is read from the controller.", ("", *MODELS)),
-    Argument("tf_prefix", "", "Prefix of the names of joints and frames, for example left_."),
+    Argument("tf_prefix", "", "Prefix of the names of joints and frames, for example left_.", pattern=NAME_PART),
     Argument("publish_tf", True, "Broadcasts the transform from base to tool0_controller on /tf."),
     Argument("rtde_frequency", 500.0, "Rate of the published state in Hz. A CB3 controller supports at most 125.",
              limits=(1.0, 500.0)),
@@ -130,8 +144,8 @@ PARAMETERS = (
 # Further arguments of driver.launch.py.
 OPTIONS = (
     Argument("sim", False, "Starts the simulated robot of ur_simulator and connects to it."),
-    Argument("sim_ip", "127.0.0.1", "Loopback address of the simulated robot: 127.0.0.1, 127.0.0.2, ..."),
-    Argument("namespace", "", "Namespace of the nodes. Use one namespace per robot."),
+    Argument("sim_ip", "127.0.0.1", "Loopback address of the simulated robot: 127.0.0.1, 127.0.0.2, ...", pattern=LOOPBACK),
+    Argument("namespace", "", "Namespace of the nodes. Use one namespace per robot.", pattern=NAMESPACE),
     Argument("one_process", True, "Runs all nodes in one process with one RTDE connection for the state."),
     Argument("params_file", "", "YAML file with parameters of the nodes. Arguments of the launch file have priority over it."),
 )
@@ -142,11 +156,12 @@ DRIVER = (*PARAMETERS, *OPTIONS)
 def _robot_arguments(side: str, number: int) -> Tuple[Argument, ...]:
     return (Argument(f"{side}_robot_ip", "", f"Address or host name of the controller of the {side} robot."),
             Argument(f"{side}_ur_type", "", f"Model of the {side} arm. If empty, it is read from the controller.", ("", *MODELS)),
-            Argument(f"{side}_namespace", side, f"Namespace of the nodes of the {side} robot."),
-            Argument(f"{side}_tf_prefix", f"{side}_", f"Prefix of the names of joints and frames of the {side} robot."),
+            Argument(f"{side}_namespace", side, f"Namespace of the nodes of the {side} robot.", pattern=NAMESPACE),
+            Argument(f"{side}_tf_prefix", f"{side}_", f"Prefix of the names of joints and frames of the {side} robot.",
+                     pattern=NAME_PART),
             Argument(f"{side}_urcap_port", 50001 + number, f"Port for the External Control URCap of the {side} robot.",
                      limits=(1, 65535)),
-            Argument(f"{side}_sim_ip", f"127.0.0.{number}", f"Loopback address of the {side} simulated robot."))
+            Argument(f"{side}_sim_ip", f"127.0.0.{number}", f"Loopback address of the {side} simulated robot.", pattern=LOOPBACK))
 
 
 # Arguments of two_robots.launch.py. The other arguments of driver.launch.py are passed to both drivers.

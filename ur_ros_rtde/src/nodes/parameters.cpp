@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "nodes/similar_names.hpp"
+#include "plugins/similar_names.hpp"
 #include "ur_ros_rtde_robot/state/rtde_outputs.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 

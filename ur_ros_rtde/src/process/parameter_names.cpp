@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/similar_names.hpp"
+#include "plugins/similar_names.hpp"
 
 namespace ur_ros_rtde {
 

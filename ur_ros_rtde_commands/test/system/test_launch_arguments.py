@@ -159,6 +159,11 @@ def test_every_default_and_every_choice_is_a_valid_value():
     ("restart_program", "yes", 'restart_program is "yes", it must be one of: true, false'),
     ("plugins", "move_j", 'plugins is "move_j", it must be a list of names'),
     ("plugins", "[", 'plugins is "[", it must be a list of names'),
+    ("tf_prefix", "bad prefix/", 'tf_prefix is "bad prefix/", it must be letters, digits, _ and /'),
+    ("namespace", "2nd", 'namespace is "2nd", it must be names of letters'),
+    ("sim_ip", "banana", 'sim_ip is "banana", it must be a loopback address'),
+    ("sim_ip", "10.0.0.1", 'sim_ip is "10.0.0.1", it must be a loopback address'),
+    ("sim_ip", "127.0.0.256", 'sim_ip is "127.0.0.256", it must be a loopback address'),
 ])
 def test_an_invalid_value_is_rejected_with_the_valid_values(name, text, message):
     with pytest.raises(ArgumentError) as error:

@@ -1,4 +1,4 @@
-#include "nodes/similar_names.hpp"
+#include "plugins/similar_names.hpp"
 
 #include <algorithm>
 #include <cstddef>
