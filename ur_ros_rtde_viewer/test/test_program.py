@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import socket
+import urllib.error
 import urllib.request
 
 import msgspec
@@ -12,7 +13,7 @@ import zstandard
 from ur_ros_rtde_viewer.arguments import RobotOptions, add_arguments, robots
 from ur_ros_rtde_viewer.errors import ViewerError
 from ur_ros_rtde_viewer.page.origin import is_accepted
-from ur_ros_rtde_viewer.page.server import start_server, stop_server, url
+from ur_ros_rtde_viewer.page.server import new_token, start_server, stop_server, url
 from ur_ros_rtde_viewer.program import main
 from ur_ros_rtde_viewer.simulator import may_be_simulator, read_surfaces
 from websockets.exceptions import InvalidStatus
@@ -97,6 +98,7 @@ def test_the_page_is_served_and_never_shared_on_the_internet(server):
     ("localhost:9000", "http://localhost:9000", True),  # a forwarded port
     ("[::1]:8080", "http://[::1]:8080", True),
     ("192.168.0.5:8080", None, True),  # no browser
+    (f"{socket.gethostname()}.local:8080", None, True),
     ("127.0.0.1:8080", "http://example.com", False),
     ("127.0.0.1:8080", "http://127.0.0.1:9999", False),
     ("127.0.0.1:8080", "null", False),
@@ -115,6 +117,27 @@ def test_another_web_site_cannot_connect(server):
     with pytest.raises(InvalidStatus) as rejection:
         connect(address, origin="http://example.com", **own)
     assert rejection.value.response.status_code == 403
+
+
+def test_a_page_on_the_network_needs_its_token():
+    assert new_token("127.0.0.1") == new_token("::1") == ""
+    token = new_token("0.0.0.0")
+    assert len(token) >= 16 and token != new_token("0.0.0.0")
+    server = start_server("127.0.0.1", 0, token)
+    try:
+        plain, own = url(server), {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 60, "max_size": None}
+        for path in ("/", "/?token=other", "/index.html"):
+            with pytest.raises(urllib.error.HTTPError) as rejection:
+                urllib.request.urlopen(plain + path)
+            assert rejection.value.code == 403 and "?token=" in rejection.value.read().decode()
+        with pytest.raises(InvalidStatus):
+            connect(plain.replace("http", "ws"), origin=plain, **own)
+        with urllib.request.urlopen(url(server, token)) as answer:
+            cookie = answer.headers["Set-Cookie"].partition(";")[0]
+        with connect(plain.replace("http", "ws"), origin=plain, additional_headers={"Cookie": cookie}, **own) as connection:
+            assert connection.recv(timeout=60)
+    finally:
+        stop_server(server)
 
 
 def names(window):

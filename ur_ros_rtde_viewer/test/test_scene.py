@@ -12,7 +12,7 @@ from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.scene import trail
 from ur_ros_rtde_viewer.scene.robot_scene import STOPPED_COLOR, RobotScene
-from ur_ros_rtde_viewer.scene.surfaces import THICKNESS, turn_z_to
+from ur_ros_rtde_viewer.scene.surfaces import OPENING, SIZE, THICKNESS, turn_z_to
 from ur_ros_rtde_viewer.scene.urdf import read_description
 from ur_ros_rtde_viewer.state.robot_state import Joints, Pose, RobotState
 
@@ -167,6 +167,21 @@ def test_the_drawn_part_of_a_surface_is_next_to_the_base_of_the_arm(scene):
     wall = ((0.7, 3.0, -2.0), (-1.0, 0.0, 0.0))
     scene.show_surfaces([wall])
     assert tuple(scene._surfaces._drawn[wall].position) == pytest.approx((0.7 + THICKNESS / 2.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("height, opened", [(0.4, True), (0.0, False), (-0.2, False)])
+def test_a_table_leaves_out_the_column_of_the_arm(scene, height, opened):
+    table = ((0.0, 0.0, height), (0.0, 0.0, 1.0))
+    scene.show_surfaces([table])
+    drawn = scene._surfaces._drawn[table]
+    if opened:
+        triangles = drawn.vertices[drawn.faces][:, :, :2]
+        corners = np.roll(triangles, -1, axis=1) - triangles
+        assert np.abs(np.linalg.det(corners[:, :2])).sum() / 2.0 == pytest.approx(SIZE**2 - OPENING**2)
+        assert np.abs(triangles).max(axis=2).min() == pytest.approx(OPENING / 2.0)
+    else:
+        assert tuple(drawn.dimensions) == (SIZE, SIZE, THICKNESS)
+    scene.show_surfaces([])
 
 
 def test_calibration_and_tool_are_part_of_the_scene(server, tmp_path):

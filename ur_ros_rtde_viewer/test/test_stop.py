@@ -1,13 +1,15 @@
 """STOP: by the driver, and through dashboard_server if the driver does not answer in time."""
 
 import time
+from types import SimpleNamespace
 
 import pytest
 from arm_state import AT_REST, home_plus
 from robot_fixtures import make_ready
 from running_viewer import RunningViewer, until
 from support import start_node
-from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT, SILENCE_TIMEOUT
+from ur_ros_rtde_viewer.control.control import Control
+from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT, SILENCE_TIMEOUT, Outcome
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -128,3 +130,11 @@ def test_the_time_of_a_held_button_counts_from_its_first_press(running, nodes, s
     press(running)
     until(lambda: nodes["command_server"].output().count("/stop: goal") > ended, "the end of the stop")
     assert text() == shown
+
+
+def test_the_success_of_one_robot_does_not_hide_the_failure_of_another():
+    control = object.__new__(Control)
+    control._outcomes, control._stop_text = {}, SimpleNamespace(content="")
+    control._show_outcome("left: ", Outcome.FAILED, "no answer")
+    control._show_outcome("right: ", Outcome.STOPPED, "0.2 s")
+    assert "left: STOP failed no answer" in control._stop_text.content and "right: Stopped. 0.2 s" in control._stop_text.content

@@ -40,9 +40,10 @@ def _serve(options: argparse.Namespace) -> None:
     from ur_ros_rtde_cli import fastdds_profile
     from ur_ros_rtde_cli.interruptions import PendingInterruption
 
-    from .page.server import start_server, stop_server, url
+    from .page.server import new_token, start_server, stop_server, url
 
-    server = start_server(options.address, options.port)
+    token = new_token(options.address) if options.token is None else "" if options.token == "none" else options.token
+    server = start_server(options.address, options.port, token)
     fastdds_profile.use()
     from .ros.nodes import Nodes
     from .viewer import Viewer
@@ -55,7 +56,7 @@ def _serve(options: argparse.Namespace) -> None:
         viewer = Viewer(server, nodes, options)
         ending.callback(viewer.close)
         server.on_client_connect(lambda _client: print("A browser shows the page.", flush=True))
-        print(f"The viewer runs at {url(server)} until Ctrl-C.", flush=True)
+        print(f"The viewer runs at {url(server, token)} until Ctrl-C.", flush=True)
         viewer.run(lambda: interruption.take() is not None)
 
 

@@ -43,6 +43,7 @@ class Control:
         self._tabs: Dict[int, List[Any]] = {}
         self._lock = threading.Lock()
         self._expanded = -float("inf")
+        self._outcomes: Dict[str, str] = {}
         for robot in self._robots:
             robot.view.panels.append(robot)
         self._node.start()
@@ -80,7 +81,9 @@ class Control:
             robot.stop(functools.partial(self._show_outcome, name))
 
     def _show_outcome(self, name: str, outcome: Outcome, text: str) -> None:
-        self._stop_text.content = f"{name}{outcome.value} {text}"
+        """Shows the last outcome of each robot: the success of one does not hide the failure of another."""
+        self._outcomes[name] = f"{name}{outcome.value} {text}"
+        self._stop_text.content = "\n\n".join(self._outcomes.values())
 
     def _connect(self, client: Any) -> None:
         panels: List[Any] = []

@@ -1,17 +1,27 @@
-"""Rejects pages of other web sites. A browser lets any site connect to a server on this machine, and viser accepts all.
+"""Rejects pages of other web sites, and on the network those who do not know the token of the page.
+
+A browser lets any site connect to a server on this machine, and viser accepts all.
 
 A request is accepted if its Host is an IP address, localhost or the name of this machine, and its Origin, if it has one, is that host.
 The first condition stops sites whose name was made to resolve to this machine (DNS rebinding).
+
+With a token, the first request has it in its URL. The answer sets a cookie, which the browser sends with all others.
 """
 
 import contextlib
+import hmac
 import http
 import ipaddress
 import socket
+from http.cookies import CookieError, SimpleCookie
 from typing import Any, Iterator, Optional
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 import websockets.asyncio.server
+
+
+PARAMETER = "token"  # of the URL
+COOKIE = "ur_ros_rtde_token"
 
 
 def _is_own_name(host: str) -> bool:
@@ -20,8 +30,9 @@ def _is_own_name(host: str) -> bool:
         ipaddress.ip_address(name)
         return True
     except ValueError:
-        own = socket.gethostname().lower()
-        return name in ("localhost", own, own.partition(".")[0])
+        own = {socket.gethostname().lower(), socket.getfqdn().lower()}
+        short = {own_name.partition(".")[0] for own_name in own}
+        return name in {"localhost", *own, *short, *(f"{own_name}.local" for own_name in short)}
 
 
 def is_accepted(host: Optional[str], origin: Optional[str]) -> bool:
@@ -31,8 +42,22 @@ def is_accepted(host: Optional[str], origin: Optional[str]) -> bool:
     return origin is None or urlsplit(origin).netloc == host
 
 
+def _cookie_token(cookies: Optional[str]) -> str:
+    try:
+        morsel = SimpleCookie(cookies or "").get(COOKIE)
+    except CookieError:
+        return ""
+    return morsel.value if morsel else ""
+
+
+def has_token(token: str, path: str, cookies: Optional[str]) -> bool:
+    """Whether a request has the token of the page, in its URL or its cookie. Without one, `token` is empty: every request."""
+    given = [*parse_qs(urlsplit(path).query).get(PARAMETER, []), _cookie_token(cookies)]
+    return not token or any(hmac.compare_digest(token.encode(), text.encode()) for text in given)
+
+
 @contextlib.contextmanager
-def only_own_pages() -> Iterator[None]:
+def only_own_pages(token: str) -> Iterator[None]:
     """Applies to the server that viser starts within the context. viser itself has no option for it."""
     serve = websockets.asyncio.server.serve
 
@@ -40,7 +65,12 @@ def only_own_pages() -> Iterator[None]:
         def check(connection: Any, request: Any) -> Any:
             if not is_accepted(request.headers.get("Host"), request.headers.get("Origin")):
                 return connection.respond(http.HTTPStatus.FORBIDDEN, "This page belongs to another web site.\n")
-            return process_request(connection, request)
+            if not has_token(token, request.path, request.headers.get("Cookie")):
+                return connection.respond(http.HTTPStatus.FORBIDDEN, f"Open the address that the viewer printed, with ?{PARAMETER}=...\n")
+            response = process_request(connection, request)
+            if token and response is not None:
+                response.headers["Set-Cookie"] = f"{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/"
+            return response
 
         return serve(*arguments, process_request=check, **options)
 

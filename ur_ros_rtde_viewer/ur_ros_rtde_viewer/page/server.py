@@ -3,13 +3,14 @@
 import contextlib
 import io
 import ipaddress
+import secrets
 import socket
 
 import viser
 
 from ..errors import ViewerError
 from .backlog import bound_backlog
-from .origin import only_own_pages
+from .origin import PARAMETER, only_own_pages
 
 TITLE = "ur_ros_rtde"
 
@@ -33,10 +34,18 @@ def _check_address(address: str, port: int) -> None:
                               "choose another one: --port 0 selects a free one") from None
 
 
-def start_server(address: str, port: int) -> viser.ViserServer:
+def new_token(address: str) -> str:
+    """Returns what a page that the network can reach asks for; empty for a page that only this machine can reach."""
+    try:
+        return "" if ipaddress.ip_address(address).is_loopback else secrets.token_urlsafe(12)
+    except ValueError:
+        return ""  # start_server() reports it
+
+
+def start_server(address: str, port: int, token: str = "") -> viser.ViserServer:
     """Returns a running server without content. Raises ViewerError if the address or the port cannot be used."""
     _check_address(address, port)
-    with contextlib.redirect_stdout(io.StringIO()), only_own_pages():  # viser prints a banner; the viewer prints the address itself
+    with contextlib.redirect_stdout(io.StringIO()), only_own_pages(token):  # viser prints a banner; the viewer prints the address itself
         server = viser.ViserServer(host=address, port=port, label=TITLE, verbose=False)
     if port not in (0, server.get_port()):
         server.stop()
@@ -58,7 +67,7 @@ def stop_server(server: viser.ViserServer) -> None:
         server.stop()
 
 
-def url(server: viser.ViserServer) -> str:
+def url(server: viser.ViserServer, token: str = "") -> str:
     host = server.get_host()
     shown = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
-    return f"http://{shown}:{server.get_port()}"
+    return f"http://{shown}:{server.get_port()}" + (f"/?{PARAMETER}={token}" if token else "")
