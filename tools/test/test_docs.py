@@ -24,6 +24,14 @@ def test_the_search_finds(site, word):
     assert re.search(rf'"?{word[:-2]}\w*"?:', terms), f"{word} is not in the index"  # which has the stems of the words
 
 
+def test_a_number_of_an_error_is_an_entry_of_the_index(site):
+    """The search compares it with the whole query."""
+    entries = (site / "searchindex.js").read_text()
+    for line in (ROOT / "ur_ros_rtde_msgs" / "msg" / "ErrorCode.msg").read_text().splitlines():
+        if number := re.match(r"uint16 \w+ = (\d+)", line):
+            assert f'"error {number[1]}":' in entries, line
+
+
 def test_the_reference_has_every_action(site):
     for file in ROOT.glob("*/action/*.action"):
         page = text_of(site / "reference" / f"actions_{file.parent.parent.name}.html")

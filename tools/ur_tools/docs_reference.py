@@ -1,5 +1,6 @@
 """Writes the pages of the site that follow from the sources: actions, messages, error codes, command lines, headers of the plugin API."""
 
+import ast
 import importlib.util
 import os
 import pathlib
@@ -88,6 +89,30 @@ def _messages(title: str, files: Sequence[pathlib.Path]) -> Page:
     return page
 
 
+def _remedies() -> Dict[str, str]:
+    """Returns the remedies of ur_ros_rtde.errors, which needs ROS, by the name of the code."""
+    tree = ast.parse((ROOT / "ur_ros_rtde_python" / "ur_ros_rtde" / "errors.py").read_text())
+    value, = [node.value for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "REMEDIES"]
+    found = ast.literal_eval(value)
+    assert isinstance(found, dict)
+    return found
+
+
+def _error_codes(source: pathlib.Path) -> Page:
+    """The search of Sphinx drops numbers, but compares whole queries with the index: "error 7"."""
+    page = ["# Error codes", "", "The values of `error_code` in results and rejections. The `message` beside it has the details.", ""]
+    remedies = _remedies()
+    texts = {name: (source / "docs" / "use" / name).read_text() for name in ("troubleshooting.md", "troubleshooting_motions.md")}
+    for constant in interface_files.constants_of(ROOT / "ur_ros_rtde_msgs" / "msg" / "ErrorCode.msg").values():
+        links = [f"[{name}](../docs/use/{name}#{constant.name.lower()})" for name, text in texts.items()
+                 if re.search(rf"^### {constant.name}$", text, re.M)]
+        page += ["```{index} error %s, error_code %s" % (constant.value, constant.value), "```", "",
+                 f"## {constant.value}: {constant.name}", "", _cell(constant.comment) or "Success.", ""]
+        page += [f"In Python: {_cell(remedies[constant.name])}.", ""] if constant.name in remedies else []
+        page += ["Messages with cause and remedy: " + ", ".join(links) + ".", ""] if links else []
+    return page
+
+
 def _help(arguments: Sequence[str]) -> str:
     command = [sys.executable, str(ROOT / "ur"), *arguments, "--help"]
     result = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, env={**os.environ, "COLUMNS": "100"})
@@ -118,6 +143,7 @@ def _pages(source: pathlib.Path) -> Iterator[Tuple[str, Page]]:
         package = folder.parent.name
         yield f"actions_{package}", _actions(source, package, sorted(folder.glob("*.action")))
     messages = ROOT / "ur_ros_rtde_msgs"
+    yield "error_codes", _error_codes(source)
     yield "messages", _messages("Messages", sorted((messages / "msg").glob("*.msg")))
     yield "services", _messages("Services", sorted((messages / "srv").glob("*.srv")))
     yield "command_line", _command_line()
