@@ -108,13 +108,12 @@ Status Robot::Impl::set_watchdog(double frequency)
                    fmt::format("the watchdog's frequency is {} Hz: it must be from {} to {} Hz", frequency,
                                min_watchdog_frequency, max_watchdog_frequency));
   }
-  const auto control = interfaces.control();
-  if (!control) {
+  if (!interfaces.control()) {
     return tl::unexpected(unavailable_error());
   }
   watchdog_frequency_ = std::max(watchdog_frequency_.load(), frequency);  // before the program needs it
-  if (!(*control)->setWatchdog(frequency)) {
-    return failure(ErrorCode::rejected_by_robot, "the control program did not set its watchdog");
+  if (Status set = interfaces.set_watchdog(frequency); !set) {
+    return set;
   }
   // A restarted program has the watchdog of the options.
   watchdog_frequency_ = std::max(options.watchdog_frequency, frequency);
@@ -141,7 +140,7 @@ Error Robot::Impl::program_ended_error() const
   const char * then = options.control_mode == ControlMode::upload
                           ? "it is restarted, without resuming the motion, as soon as the robot is ready"
                           : "restart the program with the External Control node";
-  const double frequency = watchdog_frequency_;
+  const double frequency = interfaces.watchdog_frequency();
   if (const double gap = tracker.view().gap; frequency > 0.0 && gap > 1.0 / frequency) {
     return {
         ErrorCode::program_stopped,
@@ -253,7 +252,7 @@ void Robot::Impl::end_program()
   if (options.control_mode == ControlMode::control_urcap) {
     // The program must not continue after its External Control node: that might move the arm.
     const auto ended = stop_program(options.address);
-    if (ended || options.watchdog_frequency > 0.0) {
+    if (ended || interfaces.watchdog_frequency() > 0.0) {
       return;
     }
   }

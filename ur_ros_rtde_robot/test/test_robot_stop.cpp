@@ -195,6 +195,22 @@ TEST_F(StopTest, PromisesNoWatchdogThatIsOff)
   }
 }
 
+TEST_F(StopTest, NamesTheWatchdogThatWasSet)
+{
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 10.0;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  ASSERT_TRUE(robot->set_watchdog(2.0));
+  controller.stop();
+  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
+  const auto stopped = robot->stop_motion();
+  ASSERT_FALSE(stopped);
+  EXPECT_NE(stopped.error().message.find("stops the arm within 0.5 s"), std::string::npos)
+      << stopped.error().message;
+}
+
 TEST_F(StopTest, IsPartOfTheDriversShutdown)
 {
   make_both();

@@ -23,8 +23,9 @@ constexpr MessageType message_type()
 std::shared_ptr<void> make_message(const MessageType & type);
 
 /// What an action server has to know about the types of an action. The server itself is compiled once for all
-/// actions; otherwise a hundred actions would mean a hundred copies to compile and link. In the parameters, `request`, `response` and `message` are the messages of the same names that rosidl generates;
-/// `goal`, `result` and `feedback` are A::Goal, A::Result and A::Feedback.
+/// actions; otherwise a hundred actions would mean a hundred copies to compile and link. In the parameters,
+/// `request`, `response` and `message` are the messages of the same names that rosidl generates; `goal`,
+/// `result` and `feedback` are A::Goal, A::Result and A::Feedback.
 struct ActionType {
   const rosidl_action_type_support_t * (*type_support)();
   MessageType goal_request;

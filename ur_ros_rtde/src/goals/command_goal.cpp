@@ -153,6 +153,19 @@ bool CommandGoal::started_modes() const
   return robot().activities().without(active_before_).contains_any(outlasting_modes);
 }
 
+bool CommandGoal::leaves_active(const Outcome & outcome) const
+{
+  if (robot().holder(Resource::motion)) {
+    return !outcome && started_modes();  // the other goal moves the arm
+  }
+  const bool keeps_modes = outcome && command_->traits.leaves_mode_active;
+  return !robot()
+              .activities()
+              .without(active_before_)
+              .without(keeps_modes ? outlasting_modes : Activities())
+              .empty();
+}
+
 /// A script replaces the control program, and is watched by its runner.
 std::optional<Error> CommandGoal::ended_by_robot() const
 {
@@ -269,9 +282,8 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (!lease_ || !moves_arm(command_->traits.resource)) {
     return outcome;
   }
-  if (command_->traits.resource == Resource::mode && (outcome || !started_modes()) &&
-      !stop_request().reason()) {
-    return outcome;  // other goals move the arm
+  if (command_->traits.resource == Resource::mode && !stop_request().reason() && !leaves_active(outcome)) {
+    return outcome;
   }
   StopOptions options = stop_options_;
   if (outcome) {

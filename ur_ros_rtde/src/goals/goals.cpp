@@ -124,7 +124,7 @@ void Goals::supervise_goals(const std::stop_token & stop)
   }
 }
 
-std::vector<std::string> Goals::close(const Error & why, std::chrono::milliseconds timeout)
+void Goals::end(const Error & why)
 {
   std::vector<std::shared_ptr<Goal>> goals;
   {
@@ -140,6 +140,11 @@ std::vector<std::string> Goals::close(const Error & why, std::chrono::millisecon
   for (const auto & goal : goals) {
     goal->stop(why);
   }
+}
+
+std::vector<std::string> Goals::close(const Error & why, std::chrono::milliseconds timeout)
+{
+  end(why);
   std::unique_lock lock(mutex_);
   ended_.wait_for(lock, timeout, [this] { return waiting_.empty() && running_.empty(); });
   std::vector<std::string> names;

@@ -69,11 +69,16 @@ void CommandServer::add_extensions(const ReportProblem & report)
   }
 }
 
+void CommandServer::end_goals()
+{
+  teleoperation_->stop(shutdown_error());
+  host_->goals().end(shutdown_error());
+}
+
 std::vector<std::string> CommandServer::close()
 {
-  const Error why{ErrorCode::shutdown, "the node is being shut down"};
-  teleoperation_->stop(why);  // nothing waits for the end of a session before the goals are told to end
-  auto left = host_->goals().close(why, close_timeout);
+  end_goals();  // nothing waits for the end of a session before the goals are told to end
+  auto left = host_->goals().close(shutdown_error(), close_timeout);
   teleoperation_->close();
   return left;
 }

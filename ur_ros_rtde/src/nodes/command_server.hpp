@@ -27,6 +27,7 @@ class CommandServer : public Server {
   void load_plugins() override;
   void create_actions() override;
   void start() override { robot_->start(); }
+  void end_goals() override;
   std::vector<std::string> close() override;
 
  private:

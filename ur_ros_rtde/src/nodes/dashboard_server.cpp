@@ -40,7 +40,7 @@ void DashboardServer::create_actions()
 
 std::vector<std::string> DashboardServer::close()
 {
-  return host_->goals().close(Error{ErrorCode::shutdown, "the node is being shut down"}, close_timeout);
+  return host_->goals().close(shutdown_error(), close_timeout);
 }
 
 }  // namespace ur_ros_rtde

@@ -24,6 +24,7 @@ class DashboardServer : public Server {
   void load_plugins() override;
   void create_actions() override;
   void start() override { connection_->start(); }
+  void end_goals() override { host_->goals().end(shutdown_error()); }
   std::vector<std::string> close() override;
 
  private:

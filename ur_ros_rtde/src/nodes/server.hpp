@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ur_ros_rtde_trajectory/error.hpp"
+
 namespace rcl_cxx {
 class CallbackGroup;
 class Node;
@@ -24,8 +26,11 @@ class Server {
   virtual void create_actions() {}
   /// Connects to the robot. Runs after load_plugins(), concurrently with create_actions().
   virtual void start() = 0;
-  /// Called at shutdown while communication still works. Stops all goals within close_timeout. Returns the
-  /// names of those that did not end.
+  /// Called at shutdown while communication still works: tells all goals to end, which stops the arm. Returns
+  /// at once: a goal of another node may hang.
+  virtual void end_goals() {}
+  /// Called after that. Waits for the goals, at most close_timeout. Returns the names of those that did not
+  /// end.
   virtual std::vector<std::string> close() { return {}; }
 };
 
@@ -35,6 +40,12 @@ using Servers = std::vector<std::unique_ptr<Server>>;
 /// Ends the process if `goals`, the result of Server::close(), is not empty: their threads cannot be joined,
 /// and objects that they use must not be destroyed. The watchdog of the control program stops the arm.
 void exit_without(const std::vector<std::string> & goals, const rcl_cxx::Node & node);
+
+/// Why goals end at shutdown.
+inline Error shutdown_error()
+{
+  return {ErrorCode::shutdown, "the node is being shut down"};
+}
 
 /// Time for the goals to end at shutdown: a stop, including its fallbacks.
 constexpr std::chrono::milliseconds close_timeout{5000};

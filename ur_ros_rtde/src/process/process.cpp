@@ -35,6 +35,9 @@ constexpr std::chrono::milliseconds discovery_check_period{10};
 
 void close_servers(const Servers & servers)
 {
+  for (const auto & server : servers) {
+    server->end_goals();
+  }
   std::vector<std::string> left;
   for (auto server = servers.rbegin(); server != servers.rend(); ++server) {
     for (std::string & name : (*server)->close()) {

@@ -88,11 +88,24 @@ class MovesOn : public Command<SpeedJ> {
   }
 };
 
+/// Is declared as a mode, turns joints, and succeeds while they turn.
+class TurnsAsMode : public Command<SpeedJ> {
+  CommandTraits traits() const override { return {.resource = Resource::mode}; }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration,
+                          0.0);
+    return Outcome::success();
+  }
+};
+
 UR_ROS_RTDE_EXPORT(CallsSpeedJ, "calls_speed_j")
 UR_ROS_RTDE_EXPORT(CallsMoveJRelative, "calls_move_j_relative")
 UR_ROS_RTDE_EXPORT(CallsItself, "calls_itself")
 UR_ROS_RTDE_EXPORT(CallsWithoutTheArm, "calls_without_the_arm")
 UR_ROS_RTDE_EXPORT(LeavesTurning, "leaves_turning")
 UR_ROS_RTDE_EXPORT(MovesOn, "moves_on")
+UR_ROS_RTDE_EXPORT(TurnsAsMode, "turns_as_mode")
 
 }  // namespace ur_ros_rtde

@@ -1,9 +1,11 @@
 // Commands of the stop property test that do not end soon after they have to.
 #include <chrono>
 #include <thread>
+#include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/speed_j.hpp>
 
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde/dashboard_command.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -62,7 +64,17 @@ class NeverLooks : public Command<SpeedJAction> {
   }
 };
 
+/// A dashboard command that hangs for 4 s, less than the driver waits for it at its end.
+class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
+  Outcome run(const Goal &, DashboardRun &) override
+  {
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    return Outcome::success();
+  }
+};
+
 UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
+UR_ROS_RTDE_EXPORT(Hangs, "dashboard/hangs")
 
 }  // namespace ur_ros_rtde

@@ -10,9 +10,9 @@ from support import find_program
 TEST_COMMANDS = "test_commands"
 _CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_speed_j": "CallsSpeedJ",
             "calls_move_j_relative": "CallsMoveJRelative", "calls_itself": "CallsItself",
-            "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn",
+            "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn", "turns_as_mode": "TurnsAsMode",
             "waits_for_output": "WaitsForOutput", "uses_another_tool": "UsesAnotherTool",
-            "fails_to_set_the_tool": "FailsToSetTheTool"}
+            "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs"}
 
 
 def create_plugin_prefix(prefix, package, description, libraries=()):
@@ -34,6 +34,10 @@ def prepend_path(variable, folder):
     return {variable: os.pathsep.join([str(folder), os.environ.get(variable, "")])}
 
 
+def _base(name):
+    return "DashboardPlugin" if name.startswith("dashboard/") else "CommandPlugin"
+
+
 def environment_of_test_commands(prefix):
     """Creates the prefix of the commands that are built with the tests. Returns the environment in which a driver finds them,
     which is empty if they have not been built."""
@@ -41,7 +45,7 @@ def environment_of_test_commands(prefix):
     library = build / "test" / "plugins" / f"lib{TEST_COMMANDS}.so"
     if not library.is_file():
         return {}
-    classes = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::CommandPlugin"/>'
+    classes = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::{_base(name)}"/>'
                       for name, kind in _CLASSES.items())
     description = f'<library path="{TEST_COMMANDS}">{classes}</library>'
     return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(prefix, TEST_COMMANDS, description, [library]))

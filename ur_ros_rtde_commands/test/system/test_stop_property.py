@@ -7,24 +7,36 @@ import os
 
 from robot_fixtures import addresses
 from stops import campaign
+from stops.cases import LATE_THREADS
 
 LOAD = 2.0  # it uses two cores
 LANES = 2
 CASES = 200
 FIRST_SEED = 26
+LEAST_CASES = 20  # in SECONDS, on whatever host
 SECONDS = 90.0  # no case begins later; on two idle cores, all have ended by then
 
 __all__ = ["addresses"]
 
 
-def test_every_goal_is_stopped_by_every_event(addresses, tmp_path):
-    first = int(os.environ.get("UR_STOP_SEED", FIRST_SEED))
-    run = campaign.Campaign(range(first, first + CASES), addresses[:LANES], tmp_path, lambda _report: None, SECONDS)
+def execute(seeds, addresses, log):
+    run = campaign.Campaign(seeds, addresses[:LANES], log, lambda _report: None, SECONDS)
     run.run()
-    print(f"seeds from {first}; UR_STOP_SEED selects others")
     print("\n".join([*campaign.table(run.reports), *campaign.notes(run.descriptions)]))
     for report in run.failed():
-        log = next(tmp_path.glob(f"lane_*/case_{report['seed']}.txt"), None)
-        print(log.read_text() if log else report)
+        case = next(log.glob(f"lane_*/case_{report['seed']}.txt"), None)
+        print(case.read_text() if case else report)
     assert not run.failures
     assert not [(report["seed"], report["case"], report["violations"]) for report in run.failed()]
+    return run.reports
+
+
+def test_every_goal_is_stopped_by_every_event(addresses, tmp_path):
+    first = int(os.environ.get("UR_STOP_SEED", FIRST_SEED))
+    print(f"seeds from {first}; UR_STOP_SEED selects others")
+    assert len(execute(range(first, first + CASES), addresses, tmp_path)) >= LEAST_CASES
+
+
+def test_a_late_goal_does_not_go_on_in_the_next_program(addresses, tmp_path):
+    count = len(LATE_THREADS)
+    assert len(execute(range(-count, 0), addresses, tmp_path)) == count

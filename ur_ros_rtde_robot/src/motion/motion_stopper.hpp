@@ -101,6 +101,8 @@ class MotionStopper {
   Status stop_by_command(const StopOptions & options);
   Status stop_by_dashboard(const StopOptions & options);
   Status stop_by_watchdog(const StopOptions & options);
+  /// Hz, of the program that runs, or was running when the link was lost. 0: it has none.
+  double watchdog_frequency() const;
   Status stop_motions(Activities started, const StopOptions & options);
   Status end_modes(Activities started);
   Status send_stop(Activities started, const StopOptions & options);

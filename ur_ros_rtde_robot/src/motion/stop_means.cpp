@@ -163,9 +163,9 @@ Expected<StopReport> MotionStopper::stop_without_rtde() const
                     link));
   }
   const std::string watchdog =
-      options_.watchdog_frequency > 0.0
+      watchdog_frequency() > 0.0
           ? fmt::format("the watchdog of its program stops the arm within {:.2g} s",
-                        1.0 / options_.watchdog_frequency)
+                        1.0 / watchdog_frequency())
           : std::string("the program has no watchdog (watchdog_frequency: 0): use the emergency stop");
   return failure(ErrorCode::link_lost,
                  fmt::format("cannot tell the robot to stop: {}; dashboard server: {}; {}", link,
@@ -328,12 +328,18 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
   interfaces_.close_control();
-  if (options_.watchdog_frequency == 0.0) {
+  if (watchdog_frequency() == 0.0) {
     return failure(ErrorCode::not_supported, "the program has no watchdog (watchdog_frequency: 0)");
   }
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the watchdog of the program has not stopped the arm");
+}
+
+double MotionStopper::watchdog_frequency() const
+{
+  return activities_.now().contains(Activity::script) ? options_.watchdog_frequency
+                                                      : interfaces_.watchdog_frequency();
 }
 
 double MotionStopper::cycle_time() const

@@ -38,8 +38,9 @@ class Goals {
   Status start(std::shared_ptr<Goal> goal, std::function<void()> work);
   /// Abandons `goal`, which was told to end, if it has no result `return_timeout` after the arm is at rest.
   void supervise(std::shared_ptr<Goal> goal);
-  /// Tells all goals to end, rejects new ones, and waits up to `timeout`. Returns the names of those whose
-  /// thread still runs.
+  /// Tells all goals to end, and rejects new ones. Returns at once.
+  void end(const Error & why);
+  /// The same, and waits for them up to `timeout`. Returns the names of those whose thread still runs.
   std::vector<std::string> close(const Error & why, std::chrono::milliseconds timeout);
 
  private:

@@ -1,6 +1,6 @@
 """A case of the stop property test: everything that is drawn by chance, from one number."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 from typing import Dict, List, Optional, Sequence, Tuple
 
@@ -17,10 +17,13 @@ PROFILES: Dict[str, Tuple[str, ...]] = {
 SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0}  # s, after which a silent connection is found to be dead
 HELD = 0.4  # of all cases
 LONGEST_HOLD = 0.4  # s
+# The thread of a goal is late while its program ends and the next one starts. The seeds of these cases are -1, -2, and so on.
+LATE_THREADS = [(kind, event) for kind in ("execute_trajectory", "move_j", "servo_j", "speed_j")
+                for event in ("program stopped", "program replaced")]
 
 
 def profile_of(seed: int) -> str:
-    return list(PROFILES)[seed // BLOCK % len(PROFILES)]
+    return "patient" if seed < 0 else list(PROFILES)[seed // BLOCK % len(PROFILES)]
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,16 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     second_delay = random.uniform(0.0, 0.3)
     stop = {"joint_deceleration": random.uniform(1.5, 8.0), "linear_deceleration": random.uniform(1.0, 6.0)}
     hold = _hold(random)
-    return Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold if holds else None)
+    case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold)
+    if seed < 0:
+        case = _with_late_thread(case, kinds, *LATE_THREADS[-seed - 1])
+    return case if holds else replace(case, hold=None)
+
+
+def _with_late_thread(case: Case, kinds: Sequence[GoalKind], kind: str, event: str) -> Case:
+    return replace(case, kind=next(known for known in kinds if known.name == kind),
+                   event=next(known for known in EVENTS if known.name == event), waits_for_motion=True,
+                   hold=HoldPlan(begin=-0.02, seconds=LONGEST_HOLD, newest=True, count=0, seed=0))
 
 
 def _hold(random: Random) -> Optional[HoldPlan]:

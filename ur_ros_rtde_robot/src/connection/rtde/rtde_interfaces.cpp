@@ -104,7 +104,7 @@ Status RtdeInterfaces::ensure_io()
   }
 }
 
-Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control) const
+Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control)
 {
   // Other threads may have the interface already.
   const HeldLock lock = acquire(*control_lock_, "control interface", answer_timeout);
@@ -115,6 +115,20 @@ Status RtdeInterfaces::start_watchdog(RTDEControlInterface & control) const
     return failure(ErrorCode::not_ready,
                    "the control program does not answer: look at the log of the pendant for what ended it");
   }
+  watchdog_frequency_ = options_.watchdog_frequency;
+  return {};
+}
+
+Status RtdeInterfaces::set_watchdog(double frequency)
+{
+  const auto interface = control();
+  if (!interface) {
+    return failure(ErrorCode::not_ready, "the control program does not run");
+  }
+  if (!(*interface)->setWatchdog(frequency)) {
+    return failure(ErrorCode::rejected_by_robot, "the control program did not set its watchdog");
+  }
+  watchdog_frequency_ = frequency;
   return {};
 }
 

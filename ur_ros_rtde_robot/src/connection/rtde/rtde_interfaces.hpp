@@ -83,13 +83,17 @@ class RtdeInterfaces {
   bool control_heartbeat_lost() const;
   /// Sends a heartbeat to the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
+  /// Changes the watchdog of the running control program. Until the next one, which has that of the options.
+  Status set_watchdog(double frequency);
+  /// Hz, of the newest control program. 0: it has no watchdog.
+  double watchdog_frequency() const { return watchdog_frequency_; }
 
  private:
   Status probe_control_ports() const;
   /// Converts the exception of an interface's constructor; `what` begins the message.
   Error connection_error(std::string_view what, const std::exception & error) const;
   std::shared_ptr<ur_rtde::RTDEControlInterface> connect_control(const std::string & script) const;
-  Status start_watchdog(ur_rtde::RTDEControlInterface & control) const;
+  Status start_watchdog(ur_rtde::RTDEControlInterface & control);
   /// Excludes the extensions that the controller does not compile.
   Status check_extensions(const ControllerVersion & version);
   /// Makes `control` the active interface, or none. Hold mutex_. Returns the previous one.
@@ -108,6 +112,7 @@ class RtdeInterfaces {
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
   std::atomic<std::uint32_t> starts_ = 0;
+  std::atomic<double> watchdog_frequency_ = 0.0;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
   std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();

@@ -1,0 +1,50 @@
+"""Commands that do what they must not do do not keep the arm moving. The commands are those of test/plugins."""
+
+import pytest
+from plugin_prefix import environment_of_test_commands
+from robot_fixtures import make_ready
+from support import HOME, Client, Simulator, start_node, wait_for
+
+from ur_ros_rtde_msgs.action import DashboardQuery, MoveJ, SpeedJ
+
+PLUGINS = "plugins:=[move_j,stop,turns_as_mode,dashboard/hangs]"
+STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
+
+
+@pytest.fixture
+def cell(addresses, tmp_path, processes):
+    """A simulator, a driver with the commands of test/plugins, and a client."""
+    environment = environment_of_test_commands(tmp_path / "prefix")
+    assert environment, "the test commands have not been built"
+    simulator = Simulator(addresses[1])
+    driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", PLUGINS, namespace="stubborn", env=environment))
+    client = Client("stubborn")
+    make_ready(client)
+    yield simulator, driver, client
+    client.close()
+    driver.stop()
+    simulator.stop()
+
+
+def time_to_rest(simulator, begin):
+    wait_for(simulator.is_at_rest, 15.0, "standstill")
+    return simulator.state()["timestamp"] - begin
+
+
+def test_ctrl_c_stops_the_arm_while_a_dashboard_command_hangs(cell):
+    simulator, driver, client = cell
+    assert client.send(DashboardQuery, "dashboard/hangs").accepted
+    assert client.send(MoveJ, "move_j", joint_positions=[3.0, *HOME[1:]], speed=0.5, acceleration=2.0).accepted
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
+    begin = simulator.state()["timestamp"]
+    driver.interrupt()
+    assert time_to_rest(simulator, begin) < STOPPING_TIME
+    assert driver.wait(15.0) == 0
+
+
+def test_what_a_command_of_modes_leaves_turning_is_stopped(cell):
+    simulator, _driver, client = cell
+    begin = simulator.state()["timestamp"]
+    client.send(SpeedJ, "turns_as_mode", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
+    assert time_to_rest(simulator, begin) < STOPPING_TIME
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
