@@ -155,15 +155,13 @@ bool CommandGoal::started_modes() const
 
 bool CommandGoal::leaves_active(const Outcome & outcome) const
 {
-  if (robot().holder(Resource::motion)) {
-    return !outcome && started_modes();  // the other goal moves the arm
+  const bool has_arm = moves_arm(command_->traits.resource);
+  if (robot().holder(Resource::motion) || robot().is_stopping()) {
+    return has_arm && !outcome && started_modes();  // the arm is in the hands of another goal, or of a stop
   }
-  const bool keeps_modes = outcome && command_->traits.leaves_mode_active;
-  return !robot()
-              .activities()
-              .without(active_before_)
-              .without(keeps_modes ? outlasting_modes : Activities())
-              .empty();
+  const bool keeps_modes = !has_arm || (outcome && command_->traits.leaves_mode_active);
+  const Activities started = robot().activities().without(active_before_);
+  return !started.without(keeps_modes ? outlasting_modes : Activities()).empty();
 }
 
 /// A script replaces the control program, and is watched by its runner.
@@ -279,10 +277,13 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
 
 Outcome CommandGoal::settle(const Outcome & outcome)
 {
-  if (!lease_ || !moves_arm(command_->traits.resource)) {
+  const bool has_arm = moves_arm(command_->traits.resource);
+  if (command_->only_stops() || (has_arm && !lease_)) {
     return outcome;
   }
-  if (command_->traits.resource == Resource::mode && !stop_request().reason() && !leaves_active(outcome)) {
+  const bool shares_arm = !has_arm || command_->traits.resource == Resource::mode;
+  const bool has_to_stop = has_arm && stop_request().reason();
+  if (shares_arm && !has_to_stop && !leaves_active(outcome)) {
     return outcome;
   }
   StopOptions options = stop_options_;
@@ -295,9 +296,8 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stop_request().reason().value_or(Error{}).code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
   }
-  const auto stopped = command_->traits.resource == Resource::mode
-                           ? robot().stop_motion(options, outcome.error())
-                           : robot().end_motion(lease_, options);
+  const auto stopped =
+      shares_arm ? robot().stop_motion(options, outcome.error()) : robot().end_motion(lease_, options);
   const auto why = stop_request().reason();
   // A mode that was to outlast its goal has been ended.
   const Outcome end = outcome && why && command_->traits.leaves_mode_active ? Outcome(*why) : outcome;

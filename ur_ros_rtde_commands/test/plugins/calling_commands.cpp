@@ -88,9 +88,10 @@ class MovesOn : public Command<SpeedJ> {
   }
 };
 
-/// Is declared as a mode, turns joints, and succeeds while they turn.
-class TurnsAsMode : public Command<SpeedJ> {
-  CommandTraits traits() const override { return {.resource = Resource::mode}; }
+/// Turns joints without having the arm, and succeeds while they turn.
+template <Resource resource>
+class Turns : public Command<SpeedJ> {
+  CommandTraits traits() const override { return {.resource = resource}; }
 
   Outcome run(const Goal & goal, Run & run) override
   {
@@ -100,6 +101,9 @@ class TurnsAsMode : public Command<SpeedJ> {
   }
 };
 
+using TurnsAsMode = Turns<Resource::mode>;
+using TurnsAsOutput = Turns<Resource::io>;
+
 UR_ROS_RTDE_EXPORT(CallsSpeedJ, "calls_speed_j")
 UR_ROS_RTDE_EXPORT(CallsMoveJRelative, "calls_move_j_relative")
 UR_ROS_RTDE_EXPORT(CallsItself, "calls_itself")
@@ -107,5 +111,6 @@ UR_ROS_RTDE_EXPORT(CallsWithoutTheArm, "calls_without_the_arm")
 UR_ROS_RTDE_EXPORT(LeavesTurning, "leaves_turning")
 UR_ROS_RTDE_EXPORT(MovesOn, "moves_on")
 UR_ROS_RTDE_EXPORT(TurnsAsMode, "turns_as_mode")
+UR_ROS_RTDE_EXPORT(TurnsAsOutput, "turns_as_output")
 
 }  // namespace ur_ros_rtde

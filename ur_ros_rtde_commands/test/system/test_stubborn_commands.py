@@ -7,7 +7,7 @@ from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardQuery, MoveJ, SpeedJ
 
-PLUGINS = "plugins:=[move_j,stop,turns_as_mode,dashboard/hangs]"
+PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_as_output,dashboard/hangs]"
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
 
 
@@ -42,9 +42,10 @@ def test_ctrl_c_stops_the_arm_while_a_dashboard_command_hangs(cell):
     assert driver.wait(15.0) == 0
 
 
-def test_what_a_command_of_modes_leaves_turning_is_stopped(cell):
+@pytest.mark.parametrize("name", ["turns_as_mode", "turns_as_output"])
+def test_what_a_command_without_the_arm_leaves_turning_is_stopped(cell, name):
     simulator, _driver, client = cell
     begin = simulator.state()["timestamp"]
-    client.send(SpeedJ, "turns_as_mode", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
+    client.send(SpeedJ, name, joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
     assert time_to_rest(simulator, begin) < STOPPING_TIME
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()

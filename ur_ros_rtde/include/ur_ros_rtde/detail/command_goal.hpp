@@ -75,7 +75,8 @@ class CommandGoal : public Goal {
   Outcome leave_modes(const Outcome & outcome);
   /// Modes are active that were not before.
   bool started_modes() const;
-  /// For Resource::mode: something is active that the goal has started and may not leave so.
+  /// For a goal that shares the arm with others, or has none: something is active that it has started and may
+  /// not leave so.
   bool leaves_active(const Outcome & outcome) const;
 
   const std::shared_ptr<const CommandDescription> command_;
