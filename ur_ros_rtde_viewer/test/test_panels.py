@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
-from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, state_rows
+from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, state_rows
 from ur_ros_rtde_viewer.state.history import History
 from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState
 
@@ -57,12 +57,20 @@ def test_an_active_mode_has_a_banner_and_a_row():
 
 def test_the_arm_is_shown_in_numbers():
     state = moving(position=0.5)
-    state.tcp_pose, state.wrench = Pose(np.array((0.1, -0.2, 0.3)), np.array((1.0, 0.0, 0.0, 0.0))), np.arange(6.0)
+    state.tcp_pose, state.wrench = Pose(np.array((0.1, -0.2, 0.3)), np.array((0.0, 1.0, 0.0, 0.0))), np.arange(6.0)
     rows = {title: text.split() for title, text in arm_rows(state)}
-    assert rows["Elbow"] == ["0.5000", "rad", "28.6°"] and len(rows) == 9
+    assert rows["Elbow"] == ["0.5000", "rad", "28.6°"] and len(rows) == 10
     assert rows["TCP in base"] == ["0.1000", "-0.2000", "0.3000", "m"]
+    assert rows["Roll, pitch, yaw"] == ["180.0", "0.0", "0.0", "°"]
     assert rows["Force, TCP frame"] == ["0.0", "1.0", "2.0", "N"] and rows["Torque, TCP frame"][-2:] == ["N", "m"]
     assert arm_rows(RobotState()) == []
+
+
+@pytest.mark.parametrize("wxyz, degrees", [((0.5**0.5, 0, 0, 0.5**0.5), (0, 0, 90)), ((0.5**0.5, 0, 0.5**0.5, 0), (0, 90, 0)),
+                                           ((0.5, 0.5, 0.5, 0.5), (90, 0, 90))])
+def test_orientations_are_shown_as_angles_about_fixed_axes(wxyz, degrees):
+    angles = np.degrees(roll_pitch_yaw(wxyz))
+    assert angles[1] == pytest.approx(degrees[1], abs=1e-5) and (degrees[1] == 90 or angles == pytest.approx(degrees, abs=1e-5))
 
 
 def test_the_state_names_modes_driver_and_goal():

@@ -3,7 +3,7 @@
 import html
 import math
 import time
-from typing import Any, List, Tuple
+from typing import Any, List, Sequence, Tuple
 
 from ..state.robot_state import RobotState
 
@@ -29,6 +29,14 @@ def state_rows(state: RobotState) -> List[Tuple[str, str]]:
     return rows
 
 
+def roll_pitch_yaw(wxyz: Sequence[float]) -> Tuple[float, float, float]:
+    """Returns the angles about the fixed axes x, y, z (REP 103) in rad."""
+    w, x, y, z = wxyz
+    return (math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+            math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x)))),
+            math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
+
+
 def arm_rows(state: RobotState) -> List[Tuple[str, str]]:
     """Returns titles and texts of joints, TCP and force."""
     rows = []
@@ -37,6 +45,7 @@ def arm_rows(state: RobotState) -> List[Tuple[str, str]]:
     if state.tcp_pose is not None:
         x, y, z = state.tcp_pose.position
         rows.append(("TCP in base", f"{x:8.4f} {y:8.4f} {z:8.4f} m"))
+        rows.append(("Roll, pitch, yaw", " ".join(f"{math.degrees(angle):7.1f}" for angle in roll_pitch_yaw(state.tcp_pose.wxyz)) + " °"))
     if state.wrench is not None:
         rows.append(("Force, TCP frame", " ".join(f"{value:7.1f}" for value in state.wrench[:3]) + " N"))
         rows.append(("Torque, TCP frame", " ".join(f"{value:7.2f}" for value in state.wrench[3:]) + " N m"))
