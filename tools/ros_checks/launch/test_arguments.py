@@ -1,5 +1,7 @@
 """Arguments of the launch files: all are declared, invalid ones are rejected with one message, valid ones reach the nodes."""
 
+import subprocess
+
 import pytest
 from ros2 import ROOT, parameter, ready, ros2
 from ur_ros_rtde_launch.launch_arguments import DRIVER, MOVEIT, PER_ROBOT, TWO_ROBOTS
@@ -46,6 +48,8 @@ def test_show_args_lists_all_with_description_and_default(launch_file, arguments
     ("plugins:=move_j", 'launch argument plugins is "move_j", it must be a list of names'),
     ("params_file:=/nowhere.yaml", 'params_file is "/nowhere.yaml": the file does not exist'),
     ("on_busy:=reject", "the address of the robot is missing: set robot_ip:=<address>, or sim:=true"),
+    ("sim_ip:=banana", 'launch argument sim_ip is "banana", it must be a loopback address'),
+    ("tf_prefix:=bad-prefix/", 'launch argument tf_prefix is "bad-prefix/", it must be letters, digits, _ and /'),
 ])
 def test_an_invalid_argument_is_rejected_with_one_message_before_any_process_starts(given, message):
     code, printed = ros2(*DRIVER_FILE, given)
@@ -152,6 +156,20 @@ def test_ctrl_c_stops_driver_and_simulator(launch):
     started.stop()
     assert not started.running()
     assert "process has died" not in started.output()
+
+
+def test_a_dead_simulator_ends_the_launch(launch):
+    started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.48")
+    ready(started)
+    subprocess.run(["pkill", "-9", "-f", "ur_simulator --address 127.0.0.48"], check=True)
+    started.wait(20.0)
+    assert "the simulated robot has ended" in started.output()
+
+
+def test_an_unknown_plugin_ends_the_launch_with_its_name(launch):
+    started = launch(*DRIVER_FILE[1:], "sim:=true", "sim_ip:=127.0.0.49", "plugins:=[nosuch]")
+    started.wait(20.0)
+    assert 'parameter plugins names "nosuch", but no installed plugin has that name' in started.output()
 
 
 def test_a_copy_of_the_parameter_file_is_accepted(launch, tmp_path):
