@@ -11,6 +11,7 @@ target_compile_features(ur_simulator PUBLIC cxx_std_20)
 
 add_executable(ur_simulator_app src/app/main.cpp src/app/options.cpp src/app/robots.cpp src/app/status_display.cpp
                src/app/status_text.cpp)
+target_compile_definitions(ur_simulator_app PRIVATE UR_SIMULATOR_VERSION="${PROJECT_VERSION}")
 target_link_libraries(ur_simulator_app PRIVATE sim_controller CLI11::CLI11)
 # It parses the command line; optimizing CLI11 would double the compile time.
 target_compile_options(ur_simulator_app PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion

@@ -26,6 +26,9 @@ tl::expected<std::string, std::string> help_asked_for(const std::vector<std::str
     if (arguments[i] == "--help" || arguments[i] == "-h") {
       return usage(program);
     }
+    if (arguments[i] == "--version") {
+      return fmt::format("ur_ros_rtde {}\n", UR_ROS_RTDE_VERSION);
+    }
   }
   if (arguments.size() > 1) {
     return tl::unexpected(

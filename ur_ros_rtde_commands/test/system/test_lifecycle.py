@@ -2,6 +2,8 @@
 
 import contextlib
 import os
+import pathlib
+import re
 import socket
 import threading
 import time
@@ -16,6 +18,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
 FAR_TARGET = [2.5, *HOME[1:]]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
 @pytest.mark.parametrize("name", NODES)
@@ -62,6 +65,15 @@ def test_help_shows_how_to_set_parameters(name):
     process = Process([find_program("ur_ros_rtde", name), "--help"])
     assert process.wait(15.0) == 0
     assert f"usage: {name} --ros-args -p robot_ip:=ADDRESS" in process.output() and "driver.yaml" in process.output()
+
+
+def test_nodes_and_simulator_tell_their_version():
+    version = re.search(r"<version>(.*)</version>", (ROOT / "ur_ros_rtde" / "package.xml").read_text())[1]
+    for package, name, text in (("ur_ros_rtde", "driver", f"ur_ros_rtde {version}"),
+                                ("ur_simulator", "ur_simulator", f"ur_simulator {version}")):
+        process = Process([find_program(package, name), "--version"])
+        assert process.wait(15.0) == 0
+        assert process.output().strip() == text
 
 
 def test_an_argument_that_does_not_exist_is_reported():

@@ -78,6 +78,7 @@ void add_options(CLI::App & app, AppOptions & options)
   app.description(
       "Simulates a Universal Robots controller with RTDE, dashboard server, client interfaces and a JSON "
       "control port.");
+  app.set_version_flag("--version", "ur_simulator " UR_SIMULATOR_VERSION);
   app.add_option("--address", simulator.address, "IP address to listen on")->capture_default_str();
   app.add_option("--count", options.count, "robots in this process, on consecutive addresses from --address")
       ->check(CLI::Range(1, 100))
