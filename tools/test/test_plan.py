@@ -117,7 +117,9 @@ INVALID = [
      "plan.yaml:2: waypoints[0] is [0.0, -1.57, 1.57, -1.57, -1.57, 0.0]: expected a mapping of fields: positions"),
     ("model: ur10e", "plan.yaml: there is no field model: use the option --model"),
     ("", "plan.yaml: "),
-    (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0"),
+    (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "max_velocity[2] (elbow_joint) is 0 rad/s, it must be above 0"),
+    (PATH + "max_acceleration: [1, 1, 1, 1, 1, 1000000]", "max_acceleration[5] (wrist_3_joint) is 1000000 rad/s^2, it must be above 0"),
+    (PATH + "speed_fraction: 0.001", "speed_fraction is 0.001, it must be at least 0.01 and at most 1"),
     (PATH + "max_velocity: [1, 1, x, 1, 1, 1]", "plan.yaml:7: max_velocity[2] is 'x': expected a number"),
     (PATH + "gain: fast", "plan.yaml:7: gain is 'fast'"),
     (TIMED.replace("{sec: 2}", "{nanosec: 100000000}"), " of shoulder_pan_joint is "),
@@ -138,7 +140,7 @@ def test_an_invalid_goal_is_rejected_with_the_reason(rejection):
 
 
 def test_the_program_prints_the_reason_of_a_rejection(tmp_path):
-    for text, what in (("waypoints: [", "not YAML"), (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "velocity limit of elbow_joint is 0")):
+    for text, what in (("waypoints: [", "not YAML"), (PATH + "max_velocity: [1, 1, 0, 1, 1, 1]", "max_velocity[2] (elbow_joint) is 0 rad/s, it must be above 0")):
         result = plan(tmp_path, text)
         assert result.returncode == 1 and what in result.stdout, result.stdout
         assert "Traceback" not in result.stdout and "json" not in result.stdout.lower() and result.stdout.count("plan.yaml") == 1

@@ -13,7 +13,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
+#include "ur_ros_rtde_trajectory/goal_ranges.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
 #include "ur_ros_rtde_trajectory/timed.hpp"
 
@@ -23,6 +25,44 @@ using nlohmann::json;
 using namespace ur_ros_rtde;
 using trajectory::Joints;
 using trajectory::Limits;
+
+// As the driver says it.
+Status check_range(const std::string & field, double value, double low, bool low_allowed, double high,
+                   std::string_view unit = "")
+{
+  if (value <= high && (low_allowed ? value >= low : value > low)) {
+    return {};
+  }
+  return failure(ErrorCode::invalid_goal,
+                 fmt::format("{} is {:.10g}{}, it must be {} {:.4g} and at most {:.4g}{}", field, value, unit,
+                             low_allowed ? "at least" : "above", low, high, unit));
+}
+
+struct GivenLimit {
+  const char * field;
+  const char * unit;
+  Joints Limits::* limit;
+  Joints highest;
+};
+
+Status read_limit(const json & goal, const GivenLimit & wanted, Limits & limits)
+{
+  if (!goal.contains(wanted.field)) {
+    return {};
+  }
+  const auto given = trajectory::to_joints(wanted.field, goal.at(wanted.field).get<std::vector<double>>());
+  if (!given) {
+    return tl::unexpected(given.error());
+  }
+  for (int j = 0; j < trajectory::joint_count; ++j) {
+    const auto name = fmt::format("{}[{}] ({})", wanted.field, j, trajectory::joint_name(j));
+    if (Status fine = check_range(name, (*given)[j], 0.0, false, wanted.highest[j], wanted.unit); !fine) {
+      return fine;
+    }
+  }
+  limits.*wanted.limit = *given;
+  return {};
+}
 
 Expected<Limits> read_limits(const json & goal)
 {
@@ -37,17 +77,16 @@ Expected<Limits> read_limits(const json & goal)
     limits =
         trajectory::default_speed_limits(limits);  // as execute_trajectory; given times determine the speed
   }
-  for (const auto & [field, limit] :
-       {std::pair{"max_velocity", &limits.velocity}, std::pair{"max_acceleration", &limits.acceleration},
-        std::pair{"max_jerk", &limits.jerk}}) {
-    if (!goal.contains(field)) {
-      continue;
+  const GivenLimit fields[] = {
+      {"max_velocity", " rad/s", &Limits::velocity, trajectory::make_limits(*arm).velocity},
+      {"max_acceleration", " rad/s^2", &Limits::acceleration,
+       Joints::Constant(trajectory::max_goal_acceleration)},
+      {"max_jerk", " rad/s^3", &Limits::jerk, Joints::Constant(trajectory::max_goal_jerk)},
+  };
+  for (const GivenLimit & field : fields) {
+    if (Status read = read_limit(goal, field, limits); !read) {
+      return tl::unexpected(read.error());
     }
-    const auto given = trajectory::to_joints(field, goal.at(field).get<std::vector<double>>());
-    if (!given) {
-      return tl::unexpected(given.error());
-    }
-    *limit = *given;
   }
   return limits;
 }
@@ -94,6 +133,16 @@ Expected<trajectory::Trajectory> plan(const json & goal, const Limits & limits)
   options.blend_tolerance = goal.value("blend_tolerance", options.blend_tolerance);
   options.corner_angle = goal.value("corner_angle", options.corner_angle);
   options.speed_fraction = goal.value("speed_fraction", options.speed_fraction);
+  if (Status fine = check_range("speed_fraction", options.speed_fraction, trajectory::min_goal_speed_fraction,
+                                true, 1.0);
+      !fine) {
+    return tl::unexpected(fine.error());
+  }
+  if (Status fine = check_range("blend_tolerance", options.blend_tolerance, 0.0, true,
+                                trajectory::max_goal_blend_tolerance, " rad");
+      !fine) {
+    return tl::unexpected(fine.error());
+  }
   return trajectory::plan_path(goal["waypoints"].get<std::vector<std::vector<double>>>(), limits, options);
 }
 

@@ -21,7 +21,6 @@ constexpr double default_goal_time_tolerance = 2.0;  // s
 constexpr double start_tolerance = 0.02;             // rad; MoveIt checks its own, too
 constexpr double max_start_delay = 60.0;             // s from now
 constexpr double velocity_reserve = 1.05;  // a spline between points at the limit exceeds it slightly
-constexpr double max_acceleration = 40.0;  // rad/s^2
 constexpr auto feedback_period = std::chrono::milliseconds(50);
 
 template <typename Stamp>
@@ -38,7 +37,7 @@ bool is_zero(const builtin_interfaces::msg::Time & stamp)
 /// MoveIt has computed the times with its own limits. Only the physical limits of the arm are checked here.
 trajectory::Limits widest_limits(const ArmLimits & arm)
 {
-  trajectory::Limits limits = trajectory::make_limits(arm, max_acceleration, 1e7);
+  trajectory::Limits limits = trajectory::make_limits(arm, trajectory::max_goal_acceleration, trajectory::max_goal_jerk);
   limits.velocity *= velocity_reserve;
   return limits;
 }

@@ -20,8 +20,8 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
   void check(const Goal & goal, Check & check) const override
   {
     check_trajectory_goal(check, goal, arm());
-    check.in_range("speed_fraction", goal.speed_fraction, 0.01, 1.0)
-        .in_range("blend_tolerance", goal.blend_tolerance, 0.0, 1.0, "rad")
+    check.in_range("speed_fraction", goal.speed_fraction, trajectory::min_goal_speed_fraction, 1.0)
+        .in_range("blend_tolerance", goal.blend_tolerance, 0.0, trajectory::max_goal_blend_tolerance, "rad")
         .above_zero("start_tolerance", goal.start_tolerance, 3.2, "rad");
     if (check.ok()) {
       require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal)));
