@@ -37,7 +37,8 @@ bool is_zero(const builtin_interfaces::msg::Time & stamp)
 /// MoveIt has computed the times with its own limits. Only the physical limits of the arm are checked here.
 trajectory::Limits widest_limits(const ArmLimits & arm)
 {
-  trajectory::Limits limits = trajectory::make_limits(arm, trajectory::max_goal_acceleration, trajectory::max_goal_jerk);
+  trajectory::Limits limits =
+      trajectory::make_limits(arm, trajectory::max_goal_acceleration, trajectory::max_goal_jerk);
   limits.velocity *= velocity_reserve;
   return limits;
 }

@@ -26,7 +26,8 @@ void check_trajectory_goal(Check & check, const Goal & goal, const ArmLimits & a
   using trajectory::Joints;
   check_limits(check, "max_velocity", goal.max_velocity, Eigen::Map<const Joints>(arm.velocity.data()),
                "rad/s");
-  check_limits(check, "max_acceleration", goal.max_acceleration, Joints::Constant(trajectory::max_goal_acceleration), "rad/s^2");
+  check_limits(check, "max_acceleration", goal.max_acceleration,
+               Joints::Constant(trajectory::max_goal_acceleration), "rad/s^2");
   check_limits(check, "max_jerk", goal.max_jerk, Joints::Constant(trajectory::max_goal_jerk), "rad/s^3");
   check.in_range("lookahead_time", goal.lookahead_time, 0.03, 0.2, "s")
       .in_range("gain", goal.gain, 100.0, 2000.0)
