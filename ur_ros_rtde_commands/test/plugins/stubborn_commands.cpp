@@ -66,7 +66,7 @@ class NeverLooks : public Command<SpeedJAction> {
 
 /// A dashboard command that hangs for 4 s, less than the driver waits for it at its end.
 class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
-  Outcome run(const Goal &, DashboardRun &) override
+  Outcome run(const Goal &, Run &) override
   {
     std::this_thread::sleep_for(std::chrono::seconds(4));
     return Outcome::success();
