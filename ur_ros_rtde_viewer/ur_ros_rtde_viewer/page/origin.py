@@ -19,7 +19,6 @@ from urllib.parse import parse_qs, urlsplit
 
 import websockets.asyncio.server
 
-
 PARAMETER = "token"  # of the URL
 COOKIE = "ur_ros_rtde_token"
 
