@@ -51,12 +51,21 @@ def driver(options, parameters):
 
 
 def simulator(options, nodes):
-    """Returns the process of the simulated robot. It ends together with the node that commands it, and its end ends the launch."""
+    """Returns the process of the simulated robot. It ends together with the node that commands it. If it ends alone, the launch ends."""
     # ExecuteProcess instead of Node, because the simulator does not accept --ros-args.
     process = ExecuteProcess(cmd=[ExecutableInPackage(package="ur_simulator", executable="ur_simulator"), "--address",
                                   options["sim_ip"], "--model", options["ur_type"] or DEFAULT_SIMULATED_MODEL], output="screen")
     commander = nodes[0] if options["one_process"] else nodes[NODES.index("command_server")]
     end = EmitEvent(event=ShutdownProcess(process_matcher=matches_action(process)))
     failed = EmitEvent(event=Shutdown(reason="the simulated robot has ended"))
-    return [process, RegisterEventHandler(OnProcessExit(target_action=commander, on_exit=[end])),
-            RegisterEventHandler(OnProcessExit(target_action=process, on_exit=[failed]))]
+    driver_has_ended = []
+
+    def on_driver_exit(_event, _context):
+        driver_has_ended.append(True)
+        return [end]
+
+    def on_simulator_exit(_event, _context):
+        return [] if driver_has_ended else [failed]
+
+    return [process, RegisterEventHandler(OnProcessExit(target_action=commander, on_exit=on_driver_exit)),
+            RegisterEventHandler(OnProcessExit(target_action=process, on_exit=on_simulator_exit))]

@@ -18,7 +18,8 @@ QOS = ("default", "reliable", "best_effort", "sensor_data", "latched", "transien
 
 # (regular expression, what it allows)
 NAME_PART = (r"[A-Za-z0-9_/]*", "letters, digits, _ and /")
-NAMESPACE = (r"(/?[A-Za-z_][A-Za-z0-9_]*)*", "names of letters, digits and _ that begin with no digit, separated by /")
+_NAME = r"[A-Za-z_][A-Za-z0-9_]*"
+NAMESPACE = (rf"/?|/?{_NAME}(/{_NAME})*", "names of letters, digits and _ that begin with no digit, separated by /")
 _BYTE = r"(25[0-5]|2[0-4]\d|1?\d?\d)"
 LOOPBACK = (rf"127(\.{_BYTE}){{3}}", "a loopback address: 127.0.0.1, 127.0.0.2, ...")
 

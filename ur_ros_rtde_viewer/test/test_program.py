@@ -56,6 +56,7 @@ def test_a_tool_with_an_invalid_shape_is_rejected(tmp_path, capfd):
     (["--port", "http"], "expected a port"),
     (["--port", "70000"], "expected a port"),
     (["--rate", "0"], "1 to 60"),
+    (["--token", ""], "8 or more letters"),
 ])
 def test_wrong_arguments_are_rejected_with_the_value(arguments, message, capsys):
     with pytest.raises(SystemExit):
@@ -98,7 +99,7 @@ def test_the_page_is_served_and_never_shared_on_the_internet(server):
     ("localhost:9000", "http://localhost:9000", True),  # a forwarded port
     ("[::1]:8080", "http://[::1]:8080", True),
     ("192.168.0.5:8080", None, True),  # no browser
-    (f"{socket.gethostname()}.local:8080", None, True),
+    (f"{socket.gethostname().partition('.')[0]}.local:8080", None, True),
     ("127.0.0.1:8080", "http://example.com", False),
     ("127.0.0.1:8080", "http://127.0.0.1:9999", False),
     ("127.0.0.1:8080", "null", False),

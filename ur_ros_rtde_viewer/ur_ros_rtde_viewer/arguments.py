@@ -1,6 +1,7 @@
 """Arguments of the viewer. Depends on the standard library alone, so that --help needs nothing else."""
 
 import argparse
+import re
 import math
 from dataclasses import dataclass
 from typing import Optional, Sequence, Tuple
@@ -68,6 +69,12 @@ def _port(text: str) -> int:
     return int(text)
 
 
+def _token(text: str) -> str:
+    if text != "none" and not re.fullmatch(r"[A-Za-z0-9_-]{8,}", text):
+        raise argparse.ArgumentTypeError(f"expected 8 or more letters, digits, _ and -, or none, not {text!r}")
+    return text
+
+
 def _rate(text: str) -> float:
     try:
         rate = float(text)
@@ -90,7 +97,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", type=float, metavar="M", help="length of a cylinder as the tool of the only robot")
     parser.add_argument("--address", default="127.0.0.1", metavar="IP",
                         help="address on which the page is served (default: 127.0.0.1, this machine only)")
-    parser.add_argument("--token", metavar="TEXT", help="what the URL of a page on the network must contain (default: a new one at each "
+    parser.add_argument("--token", type=_token, metavar="TEXT", help="what the URL of a page on the network must contain (default: a new one at each "
                         "start; none: nothing)")
     parser.add_argument("--port", type=_port, default=DEFAULT_PORT, metavar="PORT", help="port of the page; 0: a free one (default: 8080)")
     parser.add_argument("--rate", type=_rate, default=DEFAULT_RATE, metavar="HZ", help="updates per second, 1 to 60 (default: 30)")

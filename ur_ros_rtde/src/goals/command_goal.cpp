@@ -156,12 +156,18 @@ bool CommandGoal::started_modes() const
 bool CommandGoal::leaves_active(const Outcome & outcome) const
 {
   const bool has_arm = moves_arm(command_->traits.resource);
-  if (robot().holder(Resource::motion) || robot().is_stopping()) {
-    return has_arm && !outcome && started_modes();  // the arm is in the hands of another goal, or of a stop
-  }
   const bool keeps_modes = !has_arm || (outcome && command_->traits.leaves_mode_active);
-  const Activities started = robot().activities().without(active_before_);
-  return !started.without(keeps_modes ? outlasting_modes : Activities()).empty();
+  const Activities allowed = active_before_ | (keeps_modes ? outlasting_modes : Activities());
+  // Twice, because a goal may begin or end between two questions.
+  for (int i = 0; i < 2; ++i) {
+    if (robot().holder(Resource::motion) || robot().is_stopping()) {
+      return has_arm && !outcome && started_modes();  // the arm is in the hands of another goal, or of a stop
+    }
+    if (robot().activities().without(allowed).empty()) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// A script replaces the control program, and is watched by its runner.
@@ -296,8 +302,10 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stop_request().reason().value_or(Error{}).code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
   }
-  const auto stopped =
-      shares_arm ? robot().stop_motion(options, outcome.error()) : robot().end_motion(lease_, options);
+  const Error end_of_goal{ErrorCode::preempted,
+                          fmt::format("the arm was stopped at the end of {}, which had left it moving", action())};
+  const auto stopped = shares_arm ? robot().stop_motion(options, outcome ? end_of_goal : outcome.error())
+                                  : robot().end_motion(lease_, options);
   const auto why = stop_request().reason();
   // A mode that was to outlast its goal has been ended.
   const Outcome end = outcome && why && command_->traits.leaves_mode_active ? Outcome(*why) : outcome;

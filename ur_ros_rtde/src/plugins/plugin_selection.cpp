@@ -57,12 +57,12 @@ std::vector<PluginEntry> select_plugins(const std::vector<PluginEntry> & all, co
           entry.name, entry.package, entry.library, first->second.package, first->second.library));
     }
   }
+  for (const std::string & text : unknown("plugins_blacklist", blacklist, all)) {
+    report(text);
+  }
   if (const auto wrong = unknown("plugins", chosen, all); !wrong.empty()) {
     throw rcl_cxx::ParameterError("plugins",
                                   fmt::format("{}; `ur plugins` lists all", fmt::join(wrong, "; ")));
-  }
-  for (const std::string & text : unknown("plugins_blacklist", blacklist, all)) {
-    report(text);
   }
 
   const bool choose =

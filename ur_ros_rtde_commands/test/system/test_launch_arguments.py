@@ -161,6 +161,7 @@ def test_every_default_and_every_choice_is_a_valid_value():
     ("plugins", "[", 'plugins is "[", it must be a list of names'),
     ("tf_prefix", "bad prefix/", 'tf_prefix is "bad prefix/", it must be letters, digits, _ and /'),
     ("namespace", "2nd", 'namespace is "2nd", it must be names of letters'),
+    ("namespace", "left_robot_cell_number_of_the_second_hall-2", 'it must be names of letters'),
     ("sim_ip", "banana", 'sim_ip is "banana", it must be a loopback address'),
     ("sim_ip", "10.0.0.1", 'sim_ip is "10.0.0.1", it must be a loopback address'),
     ("sim_ip", "127.0.0.256", 'sim_ip is "127.0.0.256", it must be a loopback address'),

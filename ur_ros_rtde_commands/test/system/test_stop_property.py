@@ -19,8 +19,8 @@ SECONDS = 90.0  # no case begins later; on two idle cores, all have ended by the
 __all__ = ["addresses"]
 
 
-def execute(seeds, addresses, log):
-    run = campaign.Campaign(seeds, addresses[:LANES], log, lambda _report: None, SECONDS)
+def execute(seeds, addresses, log, seconds=SECONDS):
+    run = campaign.Campaign(seeds, addresses[:LANES], log, lambda _report: None, seconds)
     run.run()
     print("\n".join([*campaign.table(run.reports), *campaign.notes(run.descriptions)]))
     for report in run.failed():
@@ -39,4 +39,4 @@ def test_every_goal_is_stopped_by_every_event(addresses, tmp_path):
 
 def test_a_late_goal_does_not_go_on_in_the_next_program(addresses, tmp_path):
     count = len(LATE_THREADS)
-    assert len(execute(range(-count, 0), addresses, tmp_path)) == count
+    assert len(execute(range(-count, 0), addresses, tmp_path, seconds=0.0)) == count

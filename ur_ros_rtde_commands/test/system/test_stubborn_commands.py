@@ -48,4 +48,6 @@ def test_what_a_command_without_the_arm_leaves_turning_is_stopped(cell, name):
     begin = simulator.state()["timestamp"]
     client.send(SpeedJ, name, joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
     assert time_to_rest(simulator, begin) < STOPPING_TIME
+    wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would turn")
+    assert simulator.is_at_rest() and abs(simulator.state()["actual"]["position"][0] - HOME[0]) < 0.5 * STOPPING_TIME / 2.0
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()

@@ -30,8 +30,8 @@ struct PathOptions {
 Status check_path(std::span<const std::vector<double>> waypoints, const Limits & limits);
 
 /// Plans the time-optimal motion through joint positions without times, at rest at both ends. The result is
-/// verified to keep `limits` in every joint at all times. The search for it ends after 3 s: a long path with
-/// tight limits then takes more time than necessary. Without jerk limits (`Limits::has_jerk`),
+/// verified to keep `limits` in every joint at all times. The search for it ends after 3 s of processor
+/// time: a long path with tight limits then takes more time than necessary. Without jerk limits (`Limits::has_jerk`),
 /// accelerations may be discontinuous. A single waypoint, or repetitions of one waypoint, results in a
 /// trajectory of duration 0.
 ///

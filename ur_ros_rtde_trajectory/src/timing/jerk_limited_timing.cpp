@@ -137,7 +137,8 @@ class JerkLimitedTiming {
     for (std::size_t round = 0;; ++round) {
       if (!motion_.is_finite(begin_)) {
         if (round > 0) {
-          motion_.timing = std::move(last_finite);
+          motion_.timing.resize(begin_);
+          motion_.timing.insert(motion_.timing.end(), last_finite.begin(), last_finite.end());
         }
         return slowdown;
       }
@@ -152,7 +153,7 @@ class JerkLimitedTiming {
       if (accepted || round == max_rounds || !std::isfinite(slowdown) || solver_.has_to_end()) {
         return slowdown;
       }
-      last_finite = motion_.timing;
+      last_finite.assign(motion_.timing.begin() + static_cast<std::ptrdiff_t>(begin_), motion_.timing.end());
       tighten_limits(use, fractions_);
       Profile start;
       if (any_too_long) {
@@ -206,8 +207,12 @@ Grid coarse_grid(const Path & path, std::size_t first, std::size_t last)
 void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, const Limits & limits,
                          JerkSolver & solver)
 {
+  const std::size_t begin = motion.timing.size();
   JerkLimitedTiming timing(motion, first, last, limits, solver);
-  if (!timing.can_adapt_grid() || !timing.solve_with_adaptive_grid()) {
+  if (timing.can_adapt_grid() && timing.solve_with_adaptive_grid()) {
+    return;
+  }
+  if (!solver.has_to_end() || !motion.is_finite(begin) || motion.timing.size() == begin) {
     timing.solve_with_uniform_grid();
   }
 }

@@ -112,7 +112,7 @@ ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid &
       result.profile.time.push_back(piece.duration / parts);
       refined.velocity.push_back(last ? fractions.velocity[i + 1] : 1.0);
       refined.acceleration.push_back(last ? fractions.acceleration[i + 1] : 1.0);
-      refined.jerk.push_back(use[i].too_long ? 1.0 : fractions.jerk[i]);
+      refined.jerk.push_back(ends.size() > 1 ? 1.0 : fractions.jerk[i]);
       refined.binding_joints.push_back(fractions.binding_joints[i]);
       from = ends[k - 1];
     }

@@ -1,14 +1,12 @@
 #include "timing/time_parameterization.hpp"
 
-#include <chrono>
-
 #include "motion/verify.hpp"
 #include "timing/segment_timing.hpp"
 
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr std::chrono::seconds search_time{3};
+constexpr double search_time = 3.0;  // s of processor time
 
 // Verifies the whole motion. Small violations are removed by slowing down.
 Status verify_and_slow(Motion & motion, const Limits & limits)
@@ -43,7 +41,7 @@ Expected<std::shared_ptr<Motion>> parameterize_path(std::shared_ptr<const Path> 
   auto motion = std::make_shared<Motion>();
   motion->path = std::move(path);
   const Limits inner = with_margin(limits);
-  JerkSolver solver(inner, {stop, std::chrono::steady_clock::now() + search_time});
+  JerkSolver solver(inner, SearchLimit(stop, search_time));
   for (const auto & [first, last] : motion->path->segments()) {
     if (stop.stop_requested()) {
       break;

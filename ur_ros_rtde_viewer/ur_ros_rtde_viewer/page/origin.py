@@ -9,18 +9,27 @@ With a token, the first request has it in its URL. The answer sets a cookie, whi
 """
 
 import contextlib
+import functools
 import hmac
 import http
 import ipaddress
 import socket
 from http.cookies import CookieError, SimpleCookie
-from typing import Any, Iterator, Optional
+from typing import Any, FrozenSet, Iterator, Optional
 from urllib.parse import parse_qs, urlsplit
 
 import websockets.asyncio.server
 
 PARAMETER = "token"  # of the URL
-COOKIE = "ur_ros_rtde_token"
+COOKIE = "ur_ros_rtde_token"  # followed by the port: the browser sends a cookie to all ports of a host
+
+
+@functools.lru_cache(maxsize=1)
+def _names_of_this_machine() -> FrozenSet[str]:
+    """Asks the name service, which may take seconds: once, before the server starts."""
+    own = {socket.gethostname().lower(), socket.getfqdn().lower()}
+    short = {name.partition(".")[0] for name in own}
+    return frozenset((*own, *short, *(f"{name}.local" for name in short)))
 
 
 def _is_own_name(host: str) -> bool:
@@ -29,9 +38,7 @@ def _is_own_name(host: str) -> bool:
         ipaddress.ip_address(name)
         return True
     except ValueError:
-        own = {socket.gethostname().lower(), socket.getfqdn().lower()}
-        short = {own_name.partition(".")[0] for own_name in own}
-        return name in {"localhost", *own, *short, *(f"{own_name}.local" for own_name in short)}
+        return name == "localhost" or name in _names_of_this_machine()
 
 
 def is_accepted(host: Optional[str], origin: Optional[str]) -> bool:
@@ -41,17 +48,22 @@ def is_accepted(host: Optional[str], origin: Optional[str]) -> bool:
     return origin is None or urlsplit(origin).netloc == host
 
 
-def _cookie_token(cookies: Optional[str]) -> str:
+def cookie_name(host: Optional[str]) -> str:
+    """`host`: the header Host of a request."""
+    return f"{COOKIE}_{urlsplit(f'//{host}').port or 80}"
+
+
+def _cookie_token(cookies: Optional[str], host: Optional[str]) -> str:
     try:
-        morsel = SimpleCookie(cookies or "").get(COOKIE)
+        morsel = SimpleCookie(cookies or "").get(cookie_name(host))
     except CookieError:
         return ""
     return morsel.value if morsel else ""
 
 
-def has_token(token: str, path: str, cookies: Optional[str]) -> bool:
+def has_token(token: str, path: str, cookies: Optional[str], host: Optional[str]) -> bool:
     """Whether a request has the token of the page, in its URL or its cookie. Without one, `token` is empty: every request."""
-    given = [*parse_qs(urlsplit(path).query).get(PARAMETER, []), _cookie_token(cookies)]
+    given = [*parse_qs(urlsplit(path).query).get(PARAMETER, []), _cookie_token(cookies, host)]
     return not token or any(hmac.compare_digest(token.encode(), text.encode()) for text in given)
 
 
@@ -59,16 +71,18 @@ def has_token(token: str, path: str, cookies: Optional[str]) -> bool:
 def only_own_pages(token: str) -> Iterator[None]:
     """Applies to the server that viser starts within the context. viser itself has no option for it."""
     serve = websockets.asyncio.server.serve
+    _names_of_this_machine()
 
     def serve_checked(*arguments: Any, process_request: Any, **options: Any) -> Any:
         def check(connection: Any, request: Any) -> Any:
             if not is_accepted(request.headers.get("Host"), request.headers.get("Origin")):
                 return connection.respond(http.HTTPStatus.FORBIDDEN, "This page belongs to another web site.\n")
-            if not has_token(token, request.path, request.headers.get("Cookie")):
+            host = request.headers.get("Host")
+            if not has_token(token, request.path, request.headers.get("Cookie"), host):
                 return connection.respond(http.HTTPStatus.FORBIDDEN, f"Open the address that the viewer printed, with ?{PARAMETER}=...\n")
             response = process_request(connection, request)
             if token and response is not None:
-                response.headers["Set-Cookie"] = f"{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/"
+                response.headers["Set-Cookie"] = f"{cookie_name(host)}={token}; HttpOnly; SameSite=Strict; Path=/"
             return response
 
         return serve(*arguments, process_request=check, **options)
