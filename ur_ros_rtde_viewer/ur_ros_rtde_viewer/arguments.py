@@ -1,8 +1,8 @@
 """Arguments of the viewer. Depends on the standard library alone, so that --help needs nothing else."""
 
 import argparse
-import re
 import math
+import re
 from dataclasses import dataclass
 from typing import Optional, Sequence, Tuple
 
