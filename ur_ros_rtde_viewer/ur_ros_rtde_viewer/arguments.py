@@ -97,8 +97,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool-length", type=float, metavar="M", help="length of a cylinder as the tool of the only robot")
     parser.add_argument("--address", default="127.0.0.1", metavar="IP",
                         help="address on which the page is served (default: 127.0.0.1, this machine only)")
-    parser.add_argument("--token", type=_token, metavar="TEXT", help="what the URL of a page on the network must contain (default: a new one at each "
-                        "start; none: nothing)")
+    parser.add_argument("--token", type=_token, metavar="TEXT", help="what the URL of a page on the network must contain (default: a new "
+                        "one at each start; none: nothing)")
     parser.add_argument("--port", type=_port, default=DEFAULT_PORT, metavar="PORT", help="port of the page; 0: a free one (default: 8080)")
     parser.add_argument("--rate", type=_rate, default=DEFAULT_RATE, metavar="HZ", help="updates per second, 1 to 60 (default: 30)")
     parser.add_argument("--simulator", default="", metavar="IP",
