@@ -302,8 +302,9 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stop_request().reason().value_or(Error{}).code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
   }
-  const Error end_of_goal{ErrorCode::preempted,
-                          fmt::format("the arm was stopped at the end of {}, which had left it moving", action())};
+  const Error end_of_goal{
+      ErrorCode::preempted,
+      fmt::format("the arm was stopped at the end of {}, which had left it moving", action())};
   const auto stopped = shares_arm ? robot().stop_motion(options, outcome ? end_of_goal : outcome.error())
                                   : robot().end_motion(lease_, options);
   const auto why = stop_request().reason();

@@ -31,9 +31,9 @@ Status check_path(std::span<const std::vector<double>> waypoints, const Limits &
 
 /// Plans the time-optimal motion through joint positions without times, at rest at both ends. The result is
 /// verified to keep `limits` in every joint at all times. The search for it ends after 3 s of processor
-/// time: a long path with tight limits then takes more time than necessary. Without jerk limits (`Limits::has_jerk`),
-/// accelerations may be discontinuous. A single waypoint, or repetitions of one waypoint, results in a
-/// trajectory of duration 0.
+/// time: a long path with tight limits then takes more time than necessary. Without jerk limits
+/// (`Limits::has_jerk`), accelerations may be discontinuous. A single waypoint, or repetitions of one
+/// waypoint, results in a trajectory of duration 0.
 ///
 /// Returns an error with field, waypoint, joint, value and limit if there is no waypoint or more than
 /// `max_waypoints`, the number of joints is wrong, a number is not finite, a position exceeds its limits, or

@@ -9,8 +9,8 @@ namespace ur_ros_rtde::trajectory {
 /// Processor time of the calling thread, s.
 double thread_time();
 
-/// When the search for a faster motion has to end. What has been found by then keeps the limits. It counts the
-/// processor time of the thread that plans, so the same goal gives the same motion on a busy host.
+/// When the search for a faster motion has to end. What has been found by then keeps the limits. It counts
+/// the processor time of the thread that plans, so the same goal gives the same motion on a busy host.
 class SearchLimit {
  public:
   SearchLimit() = default;
