@@ -3,6 +3,7 @@
 import pathlib
 import re
 
+import pytest
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
@@ -49,3 +50,19 @@ def test_each_directory_has_a_place():
 
     misplaced = {package: folders(package) ^ set(order) for package, order in DIRECTORIES.items() if folders(package) != set(order)}
     assert not misplaced
+
+
+def includes(file):
+    return re.findall(r'#include ["<]([^">]+)[">]', file.read_text())
+
+
+@pytest.mark.parametrize("package", ["rcl_cxx", "ur_ros_rtde_robot"])
+def test_a_public_header_is_used_by_another_package(package):
+    """Directly, or by such a header. All others belong to src."""
+    folder = ROOT / package / "include"
+    used = {name for file in ROOT.glob("*/**/*.[ch]pp") if file.relative_to(ROOT).parts[0] != package for name in includes(file)}
+    new = used
+    while new:
+        new = {name for header in new if (folder / header).is_file() for name in includes(folder / header)} - used
+        used |= new
+    assert {str(header.relative_to(folder)) for header in folder.rglob("*.hpp")} - used == set()
