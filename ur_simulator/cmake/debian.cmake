@@ -1,0 +1,13 @@
+# `cpack` makes a Debian package of the program, the library and its headers for the distribution on which it runs.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME ur-simulator)
+set(CPACK_PACKAGE_CONTACT "to be filled <to-be-filled@ur-ros-rtde.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Simulated controller of Universal Robots arms")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+install(FILES LICENSE DESTINATION share/doc/ur-simulator RENAME copyright)
+include(CPack)
