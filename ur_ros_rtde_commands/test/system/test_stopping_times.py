@@ -1,4 +1,4 @@
-"""Times from an event to the standstill of the arm, in simulated time: the figures of docs/use/safety.md.
+"""Times from an event or a contact to the standstill of the arm, in simulated time: the figures of docs/use/safety.md.
 
 The simulated robot is slow, so that delays of a busy host are short in its time. The limits of driver and robot have their default values,
 in the robot's time.
@@ -9,15 +9,17 @@ import re
 import threading
 
 import pytest
+from geometry_msgs.msg import Twist, Vector3
 from robot_fixtures import make_ready
 from support import HOME, Client, Simulator, start_node, wait_for
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
 
-from ur_ros_rtde_msgs.action import MoveJ, Stop
+from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce, Stop
 
 SLOWNESS = 5.0  # s of the host for each s of the robot
 SPEED = 0.5  # rad/s, of joint 0
 AT_REST = 0.01  # rad/s
+TABLE = 0.6  # m, height; the TCP is at 0.677 m at home
 PAGE = pathlib.Path(__file__).resolve().parents[3] / "docs" / "use" / "safety.md"
 
 
@@ -76,10 +78,17 @@ def fresh_client():
 
 
 @pytest.fixture
-def moving(simulator, fresh_client):
-    """A driver whose robot turns joint 0, a recorder, and the goal."""
+def driver(simulator):
     # The robot measures the period of its watchdog, the driver the silence, each in its own time.
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "watchdog_frequency:=10.0", f"silence_limit:={0.1 * SLOWNESS}")
+    started = start_node("driver", simulator.address, "ur_type:=ur10e", "watchdog_frequency:=10.0", f"silence_limit:={0.1 * SLOWNESS}")
+    yield started
+    started.stop()
+    recover(simulator)
+
+
+@pytest.fixture
+def moving(driver, simulator, fresh_client):
+    """A driver whose robot turns joint 0, a recorder, and the goal."""
     recorder = Recorder(simulator.address)
     try:
         make_ready(fresh_client, 60.0)
@@ -88,8 +97,6 @@ def moving(simulator, fresh_client):
         yield driver, recorder, goal
     finally:
         recorder.close()
-        driver.stop()
-        recover(simulator)
 
 
 def recover(simulator):
@@ -132,3 +139,19 @@ def test_the_arm_stands_within_the_documented_time(event, moving, fresh_client, 
     driver.resume()
     print(f"{event}: {duration:.3f} s")
     assert duration <= limits()[event]
+
+
+def test_move_until_force_stops_within_a_few_cycles_of_the_contact(driver, fresh_client, simulator):
+    make_ready(fresh_client, 60.0)
+    simulator.control("place_surface", z=TABLE)
+    before = simulator.state()["cycle"]
+    try:
+        goal = fresh_client.send(MoveUntilForce, "move_until_force", twist=Twist(linear=Vector3(z=-0.05)), threshold=20.0,
+                                 deceleration=10.0, distance=0.3, timeout=15.0)
+        result = goal.succeeded(60.0)
+    finally:
+        simulator.control("clear_surfaces")
+    assert abs(result.measured.z) == pytest.approx(20.0, abs=15.0)
+    # 20 N correspond to 1 mm at 20 kN/m. At 50 mm/s, three cycles add 0.3 mm and the deceleration 0.1 mm.
+    assert TABLE - result.final_state.tcp_pose.position.z < 0.003
+    assert simulator.state()["cycle"] > before
