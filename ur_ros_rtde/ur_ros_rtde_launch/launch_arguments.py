@@ -40,7 +40,7 @@ class Argument:
     description: str
     choices: Tuple[str, ...] = ()
     limits: Optional[Tuple[float, float]] = None
-    pattern: Tuple[str, str] = (".*", "")
+    pattern: Optional[Tuple[str, str]] = None
 
     @property
     def default_text(self) -> Optional[str]:
@@ -70,9 +70,8 @@ class Argument:
             return self._number(text)
         if isinstance(self.default, tuple):
             return self._strings(text)
-        expression, allowed = self.pattern
-        if not re.fullmatch(expression, text):
-            raise self._error(text, allowed)
+        if self.pattern is not None and not re.fullmatch(self.pattern[0], text):
+            raise self._error(text, self.pattern[1])
         return text
 
     def _number(self, text: str) -> float:

@@ -175,40 +175,29 @@ TEST_F(StopTest, UsesTheDashboardServerWithoutRtde)
   EXPECT_TRUE(eventually([&] { return controller.state().at("at_rest").get<bool>(); }));
 }
 
-TEST_F(StopTest, PromisesNoWatchdogThatIsOff)
+TEST_F(StopTest, NamesTheWatchdogThatRuns)
 {
-  for (const double frequency : {0.0, 4.0}) {
+  struct Case {
+    double of_options, set;  // Hz; set: 0 for none
+    const char * end;
+  };
+  for (const Case & given : {Case{0.0, 0.0, "no watchdog (watchdog_frequency: 0): use the emergency stop"},
+                             Case{4.0, 0.0, "the watchdog of its program stops the arm within 0.25 s"},
+                             Case{10.0, 2.0, "the watchdog of its program stops the arm within 0.5 s"}}) {
     controller.start();
     auto options = robot_options();
-    options.watchdog_frequency = frequency;
+    options.watchdog_frequency = given.of_options;
     make_robot(options);
     ASSERT_TRUE(becomes_ready());
+    ASSERT_TRUE(given.set == 0.0 || robot->set_watchdog(given.set));
     controller.stop();
     ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
     const auto stopped = robot->stop_motion();
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().code, ErrorCode::link_lost);
-    const char * end = frequency > 0.0 ? "the watchdog of its program stops the arm within 0.25 s"
-                                       : "no watchdog (watchdog_frequency: 0): use the emergency stop";
-    EXPECT_NE(stopped.error().message.find(end), std::string::npos) << stopped.error().message;
+    EXPECT_NE(stopped.error().message.find(given.end), std::string::npos) << stopped.error().message;
     robot.reset();
   }
-}
-
-TEST_F(StopTest, NamesTheWatchdogThatWasSet)
-{
-  controller.start();
-  auto options = robot_options();
-  options.watchdog_frequency = 10.0;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
-  ASSERT_TRUE(robot->set_watchdog(2.0));
-  controller.stop();
-  ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
-  const auto stopped = robot->stop_motion();
-  ASSERT_FALSE(stopped);
-  EXPECT_NE(stopped.error().message.find("stops the arm within 0.5 s"), std::string::npos)
-      << stopped.error().message;
 }
 
 TEST_F(StopTest, IsPartOfTheDriversShutdown)

@@ -34,6 +34,12 @@ bool may_be_consequence(ErrorCode code)
   return code == ErrorCode::rejected_by_robot || code == ErrorCode::exception;
 }
 
+/// For the other goals, if the arm has to be stopped after a successful one.
+Error left_moving(const std::string & action)
+{
+  return {ErrorCode::preempted,
+          fmt::format("the arm was stopped at the end of {}, which had left it moving", action)};
+}
 }  // namespace
 
 Claim CommandGoal::claim()
@@ -302,11 +308,9 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stop_request().reason().value_or(Error{}).code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
   }
-  const Error end_of_goal{
-      ErrorCode::preempted,
-      fmt::format("the arm was stopped at the end of {}, which had left it moving", action())};
-  const auto stopped = shares_arm ? robot().stop_motion(options, outcome ? end_of_goal : outcome.error())
-                                  : robot().end_motion(lease_, options);
+  const auto stopped = shares_arm
+                           ? robot().stop_motion(options, outcome ? left_moving(action()) : outcome.error())
+                           : robot().end_motion(lease_, options);
   const auto why = stop_request().reason();
   // A mode that was to outlast its goal has been ended.
   const Outcome end = outcome && why && command_->traits.leaves_mode_active ? Outcome(*why) : outcome;

@@ -13,6 +13,11 @@ namespace ur_ros_rtde {
 namespace {
 using ByName = std::map<std::string, PluginEntry>;
 
+bool contains(const std::vector<std::string> & names, const std::string & name)
+{
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// One text per name that no plugin has. Names of the other server's plugins are valid, because both servers
 /// may have the same parameters.
 std::vector<std::string> unknown(const char * parameter, const std::vector<std::string> & names,
@@ -24,7 +29,7 @@ std::vector<std::string> unknown(const char * parameter, const std::vector<std::
   }
   std::vector<std::string> texts;
   for (const std::string & name : names) {
-    if (!name.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
+    if (!name.empty() && !contains(known, name)) {
       const auto similar = most_similar(name, known);
       texts.push_back(fmt::format("parameter {} names \"{}\", but no installed plugin has that name{}",
                                   parameter, name,
@@ -32,11 +37,6 @@ std::vector<std::string> unknown(const char * parameter, const std::vector<std::
     }
   }
   return texts;
-}
-
-bool contains(const std::vector<std::string> & names, const std::string & name)
-{
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 }  // namespace
 

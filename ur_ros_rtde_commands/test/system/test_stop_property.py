@@ -13,7 +13,7 @@ LOAD = 2.0  # it uses two cores
 LANES = 2
 CASES = 200
 FIRST_SEED = 26
-LEAST_CASES = 20  # in SECONDS, on whatever host
+LEAST_CASES = 20  # in SECONDS, on any host
 SECONDS = 90.0  # no case begins later; on two idle cores, all have ended by then
 
 __all__ = ["addresses"]

@@ -212,7 +212,8 @@ void append_jerk_limited(Motion & motion, std::size_t first, std::size_t last, c
   if (timing.can_adapt_grid() && timing.solve_with_adaptive_grid()) {
     return;
   }
-  if (!solver.has_to_end() || !motion.is_finite(begin) || motion.timing.size() == begin) {
+  const bool found = motion.timing.size() > begin && motion.is_finite(begin);
+  if (!found || !solver.has_to_end()) {
     timing.solve_with_uniform_grid();
   }
 }

@@ -13,6 +13,22 @@ constexpr double nearly_binding = 0.8;    // utilization of a limit
 constexpr double lowest_fraction = 0.3;   // of a limit
 constexpr double shortest_parent = 2e-4;  // s; shorter intervals are not subdivided
 
+// Into how many parts of the same duration an interval is divided: `wanted`, or 1 if a part would be empty.
+// The solver divides by the lengths.
+int number_of_parts(const TimingLawPiece & piece, double from, double to, int wanted)
+{
+  constexpr double shortest = 1e-3;  // of the interval
+  double previous = from;
+  for (int k = 1; k <= wanted; ++k) {
+    const double end = k == wanted ? to : piece.at(piece.start + piece.duration * k / wanted).u;
+    if (!(end - previous > shortest * (to - from))) {
+      return 1;
+    }
+    previous = end;
+  }
+  return wanted;
+}
+
 }  // namespace
 
 double IntervalUtilization::slowdown() const
@@ -67,26 +83,6 @@ void tighten_limits(const std::vector<IntervalUtilization> & use, LimitFractions
   }
 }
 
-// Positions on the path that divide an interval into parts of the same duration. Only the whole interval if
-// one of them would be empty: the solver divides by the lengths.
-std::vector<double> divide(const TimingLawPiece & piece, double from, double to, int parts)
-{
-  constexpr double shortest = 1e-3;  // of the interval
-  std::vector<double> ends;
-  for (int k = 1; k < parts; ++k) {
-    ends.push_back(piece.at(piece.start + piece.duration * k / parts).u);
-  }
-  ends.push_back(to);
-  double previous = from;
-  for (const double end : ends) {
-    if (!(end - previous > shortest * (to - from))) {
-      return {to};
-    }
-    previous = end;
-  }
-  return ends;
-}
-
 ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid & grid,
                           const std::vector<IntervalUtilization> & use, LimitFractions & fractions)
 {
@@ -100,21 +96,21 @@ ResampledMotion subdivide(const Motion & motion, std::size_t begin, const Grid &
   for (std::size_t i = 0; i < grid.intervals(); ++i) {
     const TimingLawPiece & piece = motion.timing[begin + i];
     const int wanted = !use[i].too_long ? 1 : std::max(use[i].acceleration, use[i].jerk) < 1.3 ? 2 : 3;
-    const std::vector<double> ends = divide(piece, grid.begin[i], grid.end[i], wanted);
-    const double parts = static_cast<double>(ends.size());
+    const int parts = number_of_parts(piece, grid.begin[i], grid.end[i], wanted);
     double from = grid.begin[i];
-    for (std::size_t k = 1; k <= ends.size(); ++k) {
-      const bool last = k == ends.size();
-      const PathState state = piece.at(piece.start + piece.duration * static_cast<double>(k) / parts);
-      result.grid.add(*motion.path, grid.piece[i], from, ends[k - 1]);
+    for (int k = 1; k <= parts; ++k) {
+      const bool last = k == parts;
+      const PathState state = piece.at(piece.start + piece.duration * k / parts);
+      const double to = last ? grid.end[i] : state.u;
+      result.grid.add(*motion.path, grid.piece[i], from, to);
       result.profile.v.push_back(state.v);
       result.profile.alpha.push_back(state.a);
       result.profile.time.push_back(piece.duration / parts);
       refined.velocity.push_back(last ? fractions.velocity[i + 1] : 1.0);
       refined.acceleration.push_back(last ? fractions.acceleration[i + 1] : 1.0);
-      refined.jerk.push_back(ends.size() > 1 ? 1.0 : fractions.jerk[i]);
+      refined.jerk.push_back(parts > 1 ? 1.0 : fractions.jerk[i]);
       refined.binding_joints.push_back(fractions.binding_joints[i]);
-      from = ends[k - 1];
+      from = to;
     }
   }
   result.profile.v.back() = result.profile.alpha.back() = 0.0;

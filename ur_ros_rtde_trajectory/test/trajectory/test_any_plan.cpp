@@ -1,4 +1,4 @@
-// Whatever the action accepts has a motion within its limits.
+// Each goal that the action accepts has a motion within its limits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,7 +71,7 @@ TEST(AnyPlanTest, IsCanceledWithinASegment)
   const auto result = plan.get();
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::canceled);
-  EXPECT_LT(std::clock() - begin, CLOCKS_PER_SEC) << "processor time, whatever else the host does";
+  EXPECT_LT(std::clock() - begin, CLOCKS_PER_SEC) << "of this process: other load does not count";
 }
 
 }  // namespace
