@@ -15,7 +15,9 @@ Fields = Dict[str, Any]
 JOINT, LINEAR, PATH, MODE = "joint", "linear", "path", "mode"
 HAND_GUIDED = ("freedrive", "teach_mode")  # no goal preempts them
 DEFAULT_DECELERATION = 2.0  # rad/s^2, m/s^2
+OF_UNTIL_FORCE = 5.0  # m/s^2, of move_until_force, which vacuum_pick calls
 FAR = 2.2  # rad, of the base joint
+SPEED = "speed of the source"  # m/s or rad/s: no field of the goal
 
 
 class Scene:
@@ -26,6 +28,10 @@ class Scene:
         angle = math.hypot(*rotation)
         factor = math.sin(0.5 * angle) / angle if angle > 0.0 else 0.0
         self._orientation = {**dict(zip("xyz", (factor * value for value in rotation))), "w": math.cos(0.5 * angle)}
+
+    @property
+    def height(self) -> float:
+        return self._position[2]
 
     def pose(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Fields:
         position = [value + offset for value, offset in zip(self._position, (x, y, z))]
@@ -43,8 +49,9 @@ class GoalKind:
     deceleration: Callable[[Fields], Optional[float]] = lambda _fields: DEFAULT_DECELERATION
     weight: float = 1.0
     before: Sequence[Tuple[str, str, Fields]] = ()  # goals that have to succeed first
-    scene: Sequence[Mapping[str, Any]] = ()  # commands for the simulator after the goal has been accepted
+    around: Callable[[Scene], Sequence[Mapping[str, Any]]] = lambda _scene: ()  # commands for the simulator, once the goal is accepted
     is_topic: bool = False
+    source: str = ""  # topic of the poses that the goal follows
     turns: bool = False  # the base joint leads: a stop of the TCP decelerates its rotation, in rad/s^2
     package: str = "ur_ros_rtde_commands"
     limits: Callable[[Fields], Tuple[float, float]] = lambda _fields: (1.4, 100.0)  # of PATH: acceleration, jerk
@@ -52,7 +59,7 @@ class GoalKind:
     @property
     def is_streamed(self) -> bool:
         """The host sends setpoints. The arm slows down, as its servo loop does, when they are late."""
-        return self.space == PATH or self.is_topic or self.action.startswith("servo_")
+        return self.space == PATH or self.is_topic or bool(self.source) or self.action.startswith("servo_")
 
 
 def home_plus(*angles: float) -> List[float]:
@@ -99,6 +106,10 @@ def _move_j_ik(random: Random, scene: Scene) -> Fields:
 
 def _move_l(random: Random, scene: Scene) -> Fields:
     return {"pose": _far_pose(random, scene), **_line(random)}
+
+
+def _move_l_fk(random: Random, _scene: Scene) -> Fields:
+    return {"joint_positions": home_plus(_sign(random) * 0.5), **_line(random)}
 
 
 def _move_l_relative(random: Random, _scene: Scene) -> Fields:
@@ -225,13 +236,29 @@ def _spiral(_random: Random, _scene: Scene) -> Fields:
     return {"radius": 0.06, "pitch": 0.02, "speed": 0.05, "force": 80.0}
 
 
+def _insert(random: Random, _scene: Scene) -> Fields:
+    return {"force": random.uniform(5.0, 20.0), "radius": 0.03, "speed": random.uniform(0.02, 0.05)}
+
+
+def _plate(scene: Scene) -> Sequence[Mapping[str, Any]]:
+    return [{"command": "place_surface", "z": scene.height - 0.01, "stiffness": 5000.0}]
+
+
+def _pick(random: Random, _scene: Scene) -> Fields:
+    return {"force": 50.0, "distance": 0.2, "speed": random.uniform(0.03, 0.05)}
+
+
+def _watch(random: Random, _scene: Scene) -> Fields:
+    return {"tolerance": 0.0005, "settling_time": 10.0, SPEED: _sign(random) * random.uniform(0.1, 0.3)}
+
+
 def _speed_of_topic(random: Random, _scene: Scene) -> Fields:
-    return {"speed": _sign(random) * random.uniform(0.1, 0.3)}
+    return {SPEED: _sign(random) * random.uniform(0.1, 0.3)}
 
 
 PACKAGE = "ur_ros_rtde_msgs/action/"
 FORCE_MODE = {"compliant": [False, False, True, False, False, False], "limits": [0.1, 0.1, 0.02, 0.5, 0.5, 0.5]}
-PUSH = {"command": "push", "force": [40.0, 60.0, 0.0], "duration": 4.0}
+PUSH: Sequence[Mapping[str, Any]] = [{"command": "push", "force": [40.0, 60.0, 0.0], "duration": 4.0}]
 TUTORIALS = "ur_ros_rtde_tutorials"
 
 KINDS: Sequence[GoalKind] = (
@@ -239,6 +266,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_j_ik", "move_j_ik", PACKAGE + "MoveJIK", _move_j_ik, JOINT),
     GoalKind("move_j_relative", "move_j_relative", PACKAGE + "MoveJRelative", _move_j_relative, JOINT),
     GoalKind("move_l", "move_l", PACKAGE + "MoveL", _move_l, weight=1.5),
+    GoalKind("move_l_fk", "move_l_fk", PACKAGE + "MoveLFK", _move_l_fk, turns=True),
     GoalKind("move_l_relative", "move_l_relative", PACKAGE + "MoveLRelative", _move_l_relative),
     GoalKind("move_p", "move_p", PACKAGE + "MoveP", _move_p, deceleration=_unspecified),
     GoalKind("move_c", "move_c", PACKAGE + "MoveC", _move_c, deceleration=_unspecified),
@@ -263,12 +291,16 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("force_mode", "force_mode", PACKAGE + "ForceMode", _force_mode, MODE, _unspecified),
     GoalKind("move_j in force mode", "move_j", PACKAGE + "MoveJ", _move_j, JOINT,
              before=[("force_mode_start", PACKAGE + "ForceMode", FORCE_MODE)]),
-    GoalKind("freedrive", "freedrive", PACKAGE + "Freedrive", _no_fields, MODE, _unspecified, scene=[PUSH]),
-    GoalKind("teach_mode", "teach_mode", PACKAGE + "TeachMode", _no_fields, MODE, _unspecified, scene=[PUSH]),
+    GoalKind("freedrive", "freedrive", PACKAGE + "Freedrive", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
+    GoalKind("teach_mode", "teach_mode", PACKAGE + "TeachMode", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
     GoalKind("direct_torque", "direct_torque", PACKAGE + "DirectTorque", _torque, MODE, _unspecified),
     GoalKind("send_script", "send_script", PACKAGE + "SendScript", _script, JOINT, _unspecified),
     GoalKind("move_down_until_force", "move_down_until_force", f"{TUTORIALS}/action/MoveDownUntilForce", _down, package=TUTORIALS),
     GoalKind("spiral_search", "spiral_search", f"{TUTORIALS}/action/SpiralSearch", _spiral, MODE, _unspecified, package=TUTORIALS),
+    GoalKind("insert_peg", "insert_peg", f"{TUTORIALS}/action/InsertPeg", _insert, MODE, _unspecified, around=_plate, package=TUTORIALS),
+    GoalKind("vacuum_pick", "vacuum_pick", f"{TUTORIALS}/action/VacuumPick", _pick, deceleration=lambda _fields: OF_UNTIL_FORCE,
+             package=TUTORIALS),
+    GoalKind("visual_servo", "visual_servo", f"{TUTORIALS}/action/VisualServo", _watch, source="visual_servo/target", package=TUTORIALS),
     GoalKind("topic servo_joint", "servo_joint", "sensor_msgs/msg/JointState", _speed_of_topic, is_topic=True, turns=True),
     GoalKind("topic servo_pose", "servo_pose", "geometry_msgs/msg/PoseStamped", _speed_of_topic, is_topic=True),
     GoalKind("topic twist", "twist", "geometry_msgs/msg/TwistStamped", _speed_of_topic, is_topic=True),

@@ -208,19 +208,26 @@ class Lane:
         fields = case.kind.fields(case_random(case), self.scene)
         self.fields = fields
         self.trace = Trace(self.simulator)
-        self.running = running.start(self, case.kind, fields, case.event.needs_client)
+        with running.source(self, case.kind, fields):
+            self.running = running.start(self, case.kind, fields, case.event.needs_client)
+            try:
+                rejection = self.running.rejection()
+                if rejection is not None:
+                    self._on_rejection(rejection, report)
+                    return
+                self._run_until_event(case, report)
+                self._move_on(case, report)
+            finally:
+                self.running.close()
+
+    def _run_until_event(self, case: Case, report: Report) -> None:
         try:
-            rejection = self.running.rejection()
-            if rejection is not None:
-                self._on_rejection(rejection, report)
-                return
-            for command in case.kind.scene:
+            for command in case.kind.around(self.scene):
                 self.simulator.control(**command)
             self._interrupt(case, report)
         finally:
-            self.running.close()
-            self.simulator.control("clear_pushes")
-        self._move_on(case, report)
+            for name in ("clear_pushes", "clear_surfaces"):
+                self.simulator.control(name)
 
     def _send_before(self, action: str, kind, fields) -> None:
         """A stall of the host between two cases may have ended the control program, which is then started again."""
@@ -309,10 +316,10 @@ class Lane:
             wait_for(lambda: not self.driver.running(), 60.0, "the end of the driver")
         self.sleep_until(self.now() + QUIET)
         before = self.simulator.state()["actual"]["position"]
-        if case.event.recover is not None:
-            self.running.close()
-            if not case.event.ends_driver:
-                case.event.recover(self)
+        self.running.pause()
+        self.running.close()
+        if case.event.recover is not None and not case.event.ends_driver:
+            case.event.recover(self)
         if not case.event.keeps_program and not case.event.ends_driver:
             self._wait_until_program_runs()
         self.sleep_until(self.now() + QUIET)
