@@ -53,6 +53,7 @@ class Spinning {
 
 /// What a goal of a test does, by default nothing.
 struct Behavior {
+  using Result = Trigger::Result;
   std::function<Status(std::vector<GoalQuery> &)> check = [](std::vector<GoalQuery> &) { return Status(); };
   std::function<Outcome(const StopRequest &)> execute = [](const StopRequest &) {
     return Outcome::success();
@@ -81,14 +82,7 @@ class BehavingGoal : public Goal {
   void send_result(const Outcome & outcome, bool) override
   {
     Trigger::Result result;
-    const Outcome actual = guarded([&] {
-      behavior_.fill_result(outcome, result);
-      return outcome;
-    });
-    if (actual.code() == ErrorCode::exception) {
-      write_standard_fields(actual, result);
-    }
-    send(actual, &result);
+    send(write_outcome(behavior_, outcome, result), &result);
   }
 
   const Behavior & behavior_;
@@ -108,14 +102,25 @@ class GoalTest : public testing::Test {
           goal_ = std::make_shared<BehavingGoal>(host_, id, behavior_);
           return goal_;
         },
-        [](const Outcome & outcome, void * result) {
-          write_standard_fields(outcome, *static_cast<Trigger::Result *>(result));
-        });
+        make_missing_results(behavior_));
   }
   auto send()
   {
     EXPECT_TRUE(client_->wait_for_action_server(seconds(20)));
     return client_->send_goal(Trigger::Goal(), seconds(20));
+  }
+  /// Whether a goal of another action, which is a stop, succeeds.
+  bool stops()
+  {
+    stop_server_ = std::make_unique<GoalServer>(
+        host_, GoalServer::Description{rcl_cxx::action_type<Trigger>(), "stop", {}, true},
+        [this](const rcl_cxx::GoalUUID & id, const void *) {
+          return std::make_shared<BehavingGoal>(host_, id, stop_behavior_);
+        },
+        make_missing_results(stop_behavior_));
+    const auto client = rcl_cxx::create_action_client<Trigger>(node_, "stop");
+    EXPECT_TRUE(client->wait_for_action_server(seconds(20)));
+    return client->send_goal(Trigger::Goal(), seconds(20)).has_value();
   }
   std::shared_ptr<rcl_cxx::ClientGoalHandle<Trigger>> send_and_go_on()
   {
@@ -144,10 +149,10 @@ class GoalTest : public testing::Test {
   rcl_cxx::Context::SharedPtr context_ = make_context("test_goals");
   rcl_cxx::Node node_{context_, "test_goals"};
   PluginHost host_{node_};
-  Behavior behavior_;
+  Behavior behavior_, stop_behavior_;
   std::shared_ptr<Goal> goal_;  ///< the newest
   Spinning spinning_{node_, host_.stop_group().get()};
-  std::unique_ptr<GoalServer> server_;
+  std::unique_ptr<GoalServer> server_, stop_server_;
   std::shared_ptr<rcl_cxx::ActionClient<Trigger>> client_ =
       rcl_cxx::create_action_client<Trigger>(node_, "test");
 };

@@ -151,6 +151,57 @@ TEST_F(GoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
   EXPECT_EQ(end.get().result.error_code, static_cast<std::uint16_t>(ErrorCode::protective_stop));
 }
 
+TEST_F(GoalTest, AResultThatHangsDelaysNoOther)
+{
+  std::promise<void> returns;
+  std::promise<void> writes;
+  const auto returned = returns.get_future().share();
+  const auto written = writes.get_future().share();
+  behavior_.execute = [returned](const StopRequest &) {
+    returned.wait();
+    return Outcome::success("too late");
+  };
+  serve();
+  std::atomic<int> results{0};
+  std::promise<void> hangs;
+  behavior_.fill_result = [&, written](const Outcome & outcome, Trigger::Result & result) {
+    if (++results == 1) {
+      hangs.set_value();
+      written.wait();
+    }
+    write_standard_fields(outcome, result);
+  };
+  const auto first = send_and_go_on();
+  const auto second = send_and_go_on();
+  ASSERT_TRUE(first && second);
+  first->async_cancel().get();
+  EXPECT_EQ(hangs.get_future().wait_for(seconds(20)), std::future_status::ready);
+  second->async_cancel().get();
+  auto end = second->async_get_result();
+  EXPECT_EQ(end.wait_for(seconds(20)), std::future_status::ready);
+  writes.set_value();
+  returns.set_value();
+  EXPECT_EQ(result(first).status, rcl_cxx::GoalStatus::canceled);
+}
+
+TEST_F(GoalTest, WithoutAResultDoesNotAskItsCommandForOne)
+{
+  int asked = 0;
+  behavior_.fill_result = [&](const Outcome & outcome, Trigger::Result & result) {
+    ++asked;
+    write_standard_fields(outcome, result);
+  };
+  const auto write = make_missing_results(behavior_);
+  const int asked_before = asked;
+  Trigger::Result unknown;
+  write(rcl_cxx::GoalStatus::unknown, &unknown);
+  Trigger::Result aborted;
+  write(rcl_cxx::GoalStatus::aborted, &aborted);
+  EXPECT_EQ(asked, asked_before) << "requests for results are served by the thread that serves stops";
+  EXPECT_NE(unknown.message.find("no such goal"), std::string::npos) << unknown.message;
+  EXPECT_NE(aborted.message.find("without a result"), std::string::npos) << aborted.message;
+}
+
 TEST_F(GoalTest, CancelDoesNotWaitForTheCheckOfAnotherGoal)
 {
   behavior_.execute = until_told;
@@ -214,6 +265,7 @@ TEST_F(GoalTest, IsRejectedAboveTheLimitUntilOneHasEnded)
     ASSERT_TRUE(goals.back()) << i;
   }
   EXPECT_FALSE(send());
+  EXPECT_TRUE(stops()) << "a stop has threads of its own";
   goals.front()->async_cancel().get();
   result(goals.front());
   const auto limit = std::chrono::steady_clock::now() + seconds(20);

@@ -93,13 +93,16 @@ int Robot::realtime_priority() const
 
 Locked<ur_rtde::RTDEControlInterface> Robot::control(const Lease & lease)
 {
-  return control().permitted_by(permission(lease));
+  if (const auto control = impl_->interfaces.control()) {
+    return control->permitted_by(permission(lease));
+  }
+  throw RobotError(impl_->unavailable_error());
 }
 
-Locked<ur_rtde::RTDEControlInterface> Robot::control()
+Locked<ur_rtde::RTDEControlInterface> Robot::control_for_queries() const
 {
-  if (auto control = impl_->interfaces.control()) {
-    return *control;
+  if (auto control = impl_->interfaces.control_for_queries()) {
+    return *std::move(control);
   }
   throw RobotError(impl_->unavailable_error());
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "connection/dashboard_request.hpp"
@@ -60,7 +61,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       interfaces(options, control_scripts, log),
       registers(options, interfaces),
       activities(interfaces, registers, tracker),
-      stopper(options, state, interfaces, registers, tracker, activities, arbiter),
+      stopper(options, state, interfaces, registers, tracker, activities, arbiter, log),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},
@@ -256,20 +257,30 @@ void Robot::Impl::end_program()
       return;
     }
   }
+  bool ended = false;
   try {
     const auto held = control->hold();
     held->setCommandTimeout(std::chrono::milliseconds(500));
-    held->stopScript();
+    ended = held->stopScript();
   } catch (const std::exception &) {
-    // The watchdog ends it.
+    // It may have ended by itself.
+  }
+  if (!ended && interfaces.watchdog_frequency() == 0.0) {
+    std::ignore = stop_program(options.address);  // nothing else would end it
   }
 }
 
 Robot::Impl::~Impl()
 {
+  const auto stop = [this] {
+    return interfaces.control_interface()
+               ? stopper.begin({}, Error{ErrorCode::shutdown, "the driver is shutting down"})
+               : Stopping();
+  };
+  std::ignore = stop();  // now: the end of the manager's thread takes time
   manager.stop();
-  if (interfaces.control_interface()) {
-    stopper.begin({}, Error{ErrorCode::shutdown, "the driver is shutting down"}).wait();
+  if (const auto stopping = stop(); stopping.valid()) {
+    stopping.wait();  // the stopper logs a failure
     end_program();
   }
   stopper.close();

@@ -84,16 +84,20 @@ Status Robot::is_valid(const Lease & lease) const
   return is_current(lease.permit_->generation());
 }
 
-std::function<Status()> Robot::permission(const Lease & lease) const
+std::function<Expected<std::shared_ptr<void>>()> Robot::permission(const Lease & lease) const
 {
-  return [this, permit = lease.permit_]() -> Status {
+  return [this, permit = lease.permit_]() -> Expected<std::shared_ptr<void>> {
     if (!permit) {
       return failure(ErrorCode::exception, "there is no lease");
     }
+    auto call = impl_->activities.begin_call(permit);
     if (auto why = permit->revoked()) {
       return tl::unexpected(*std::move(why));
     }
-    return is_current(permit->generation());
+    if (const Status current = is_current(permit->generation()); !current) {
+      return tl::unexpected(current.error());
+    }
+    return call;
   };
 }
 

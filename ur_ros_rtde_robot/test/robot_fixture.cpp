@@ -59,8 +59,15 @@ testing::AssertionResult RobotFixture::becomes_ready_again(std::size_t times)
   return becomes_ready();
 }
 
+Locked<ur_rtde::RTDEControlInterface> RobotFixture::control()
+{
+  holder_ = acquire();
+  return robot->control(holder_);
+}
+
 Lease RobotFixture::acquire(Resource resource)
 {
+  holder_ = {};
   auto lease = robot->acquire(claim(resource));
   EXPECT_TRUE(lease) << lease.error().message << "\n" << log.text();
   return lease ? std::move(*lease) : Lease();
@@ -69,6 +76,7 @@ Lease RobotFixture::acquire(Resource resource)
 /// The robot, not the arbiter, decides whether a script can run.
 ScriptReport RobotFixture::run_script(const std::string & script, const ScriptOptions & options)
 {
+  holder_ = {};
   const auto lease =
       robot->acquire(claim(options.kind == ScriptKind::secondary ? Resource::none : Resource::script));
   ScriptReport rejected;
@@ -88,7 +96,7 @@ void RobotFixture::move_joints()
 {
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
-  ASSERT_TRUE(robot->control()->moveJ(q, 0.8, 2.0, true)) << log.text();
+  ASSERT_TRUE(control()->moveJ(q, 0.8, 2.0, true)) << log.text();
   ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.7; })) << log.text();
 }
 
@@ -96,7 +104,7 @@ void RobotFixture::move_linear()
 {
   auto pose = robot->receive()->getActualTCPPose();
   pose[2] += 0.2;
-  ASSERT_TRUE(robot->control()->moveL(pose, 0.1, 1.0, true)) << log.text();
+  ASSERT_TRUE(control()->moveL(pose, 0.1, 1.0, true)) << log.text();
   ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_speed[2] > 0.09; })) << log.text();
 }
 

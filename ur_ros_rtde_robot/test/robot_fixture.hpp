@@ -21,7 +21,7 @@ struct RobotFixture : testing::Test {
   std::vector<std::chrono::steady_clock::time_point> status_times;  ///< of `statuses`
   std::vector<Sample> samples;                                      ///< while `recording`
   std::atomic<bool> recording{false};
-  std::unique_ptr<Robot> robot;  ///< last: its callbacks use the rest
+  std::unique_ptr<Robot> robot;  ///< its callbacks use what is above
 
   void make_robot(RobotOptions options = robot_options());
   void make_both();
@@ -49,6 +49,8 @@ struct RobotFixture : testing::Test {
   }
   /// Fails the test without a lease.
   Lease acquire(Resource resource = Resource::motion);
+  /// With a lease that lasts until the next call of a function of the fixture that needs one.
+  Locked<ur_rtde::RTDEControlInterface> control();
   ScriptReport run_script(const std::string & script, const ScriptOptions & options = {});
   Status run_extension(const std::string & name, const ExtensionOptions & options = {});
 
@@ -56,6 +58,9 @@ struct RobotFixture : testing::Test {
   /// ms.
   double highest_deceleration(std::size_t index);
   std::vector<Sample> recorded();
+
+ private:
+  Lease holder_;
 };
 
 }  // namespace ur_ros_rtde::test

@@ -125,7 +125,7 @@ TEST_F(StatedModelTest, PreventsMotionIfItContradictsTheController)
     EXPECT_NE(message.find(part), std::string::npos) << message;
   }
   EXPECT_EQ(robot->ready_to_move().error().code, ErrorCode::model_mismatch);
-  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->control_for_queries(), RobotError);
   EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true)) << "commands without motion work";
   EXPECT_TRUE(robot->latest());
   EXPECT_EQ(run_script("textmsg(\"here\")").error.code, ErrorCode::model_mismatch);

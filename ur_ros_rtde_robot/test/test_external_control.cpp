@@ -77,7 +77,7 @@ struct ExternalControlTest : RobotFixture {
     auto there = robot->receive()->getActualQ();
     there[5] += 0.02;
     const auto mark = robot->mark_motion();
-    if (!robot->control()->moveJ(there, 1.0, 2.0, true) ||
+    if (!control()->moveJ(there, 1.0, 2.0, true) ||
         !eventually([&] { return robot->motion_progress(mark).finished(); })) {
       return testing::AssertionFailure() << "it does not move\n" << log.text();
     }
@@ -89,7 +89,7 @@ TEST_F(ExternalControlTest, BecomesReadyWhenTheProgramIsPlayed)
 {
   start(options());
   EXPECT_NE(robot->status().message.find(std::to_string(port)), std::string::npos) << robot->status().message;
-  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->control_for_queries(), RobotError);
   EXPECT_FALSE(robot->ready_to_move());
   EXPECT_FALSE(eventually([&] { return robot->latest()->is_program_running(); }, 400ms))
       << "nobody has played it";
@@ -272,7 +272,7 @@ TEST_F(ExternalControlTest, DoesNotAdoptAProgramInTheMiddleOfAMotion)
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("before the driver was connected") != std::string::npos;
   })) << robot->status().message;
-  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->control_for_queries(), RobotError);
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(waits_for_play());
   play();

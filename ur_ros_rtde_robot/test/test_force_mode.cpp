@@ -5,12 +5,12 @@ namespace {
 
 /// What ur_rtde does not wait for: the control program enters force mode after forceMode() has returned.
 struct ForceModeTest : RobotFixture {
-  bool enter(int type) const
+  bool enter(int type)
   {
-    return robot->control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, type,
+    return control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, type,
                                        {0.1, 0.1, 0.01, 0.1, 0.1, 0.1});
   }
-  bool is_executed() const { return robot->control()->waitUntilLastCommandExecuted(); }
+  bool is_executed() const { return robot->control_for_queries()->waitUntilLastCommandExecuted(); }
 };
 
 TEST_F(ForceModeTest, IsOnWhenItsCommandHasBeenExecuted)
@@ -20,7 +20,7 @@ TEST_F(ForceModeTest, IsOnWhenItsCommandHasBeenExecuted)
     ASSERT_TRUE(enter(2));
     ASSERT_TRUE(is_executed());
     EXPECT_TRUE(controller.state()["force_mode"]) << "entered " << i << " times before";
-    ASSERT_TRUE(robot->control()->forceModeStop());
+    ASSERT_TRUE(control()->forceModeStop());
     EXPECT_TRUE(is_executed()) << "forceModeStop() has waited";
   }
 }

@@ -186,6 +186,56 @@ TEST_F(LeaseTest, AStopDoesNotWaitForABlockingMotion)
   EXPECT_TRUE(stays_at_rest());
 }
 
+TEST_F(LeaseTest, AStopEndsACallThatIsAboutToStartAMotion)
+{
+  const Lease lease = acquire();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  std::atomic<bool> permitted{false};
+  std::atomic<bool> stopped{false};
+  std::jthread late([&] {
+    const auto held = robot->control(lease).hold();
+    permitted = true;
+    eventually([&] { return stopped.load(); });
+    EXPECT_FALSE(held->moveJ(q, 0.8, 2.0, true));
+  });
+  ASSERT_TRUE(eventually([&] { return permitted.load(); }));
+  const auto report = robot->stop_motion();
+  stopped = true;
+  late.join();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::program_stopped) << "the call keeps the control interface";
+  EXPECT_TRUE(stays_at_rest());
+}
+
+TEST_F(LeaseTest, AStopOfAnArmAtRestWaitsForNoQuery)
+{
+  const Lease lease = acquire();
+  const auto query = robot->control_for_queries().hold();
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::nothing_moved);
+  EXPECT_FALSE(robot->may_continue(lease));
+}
+
+TEST_F(LeaseTest, NothingMovesWithoutOne)
+{
+  const auto q = robot->receive()->getActualQ();
+  const std::vector<double> turning{0.4, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const auto control = robot->control_for_queries();
+  EXPECT_THROW(control->moveJ(q, 0.8, 2.0, true), std::logic_error);
+  EXPECT_THROW(control->speedJ(turning, 2.0, 0.0), std::logic_error);
+  EXPECT_THROW(control->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0), std::logic_error);
+  EXPECT_THROW(control->freedriveMode(), std::logic_error);
+  EXPECT_THROW(control->sendCustomScript("def f():\n  movej([0, 0, 0, 0, 0, 0])\nend\n"), std::logic_error);
+  EXPECT_THROW(control->stopScript(), std::logic_error);
+  EXPECT_TRUE(control->isSteady()) << "a query works";
+  EXPECT_TRUE(robot->activities().empty());
+  const Lease lease = acquire();
+  EXPECT_TRUE(robot->control(lease)->speedJ(turning, 2.0, 0.0)) << "the holder of a lease may move the arm";
+  EXPECT_TRUE(robot->stop_motion());
+}
+
 TEST_F(LeaseTest, AStrongerStopReplacesAGentleOne)
 {
   const Lease lease = acquire();
@@ -287,6 +337,18 @@ TEST_F(LeaseTest, AHolderThatDoesNotBeginToBrakeIsStopped)
   robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
   ASSERT_TRUE(eventually([&] { return at_rest(); }));
   EXPECT_LE(time_to_deceleration(), stop_begins_within);
+  EXPECT_EQ(robot->may_continue(lease).error().code, ErrorCode::canceled);
+}
+
+TEST_F(LeaseTest, TheEndOfAnotherHolderDoesNotEndTheSupervisionOfOneThatBrakes)
+{
+  const Lease lease = acquire();
+  const Lease mode = acquire(Resource::mode);
+  move(lease);
+  const Robot::Braking braking(lease);
+  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  robot->request_stop(mode, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
   EXPECT_EQ(robot->may_continue(lease).error().code, ErrorCode::canceled);
 }
 

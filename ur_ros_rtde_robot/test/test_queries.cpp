@@ -24,7 +24,6 @@ double distance(const std::vector<double> & a, const std::vector<double> & b)
 
 struct QueryTest : RobotFixture {
   Joints now() { return robot->receive()->getActualQ(); }
-  Locked<ur_rtde::RTDEControlInterface> control() { return robot->control(); }
 };
 
 TEST_F(QueryTest, ReturnsItsOwnAnswerNotThePreviousOne)

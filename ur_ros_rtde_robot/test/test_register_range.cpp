@@ -43,13 +43,13 @@ TEST_P(UpperRangeTest, SupportsMotionsAndStops)
   const auto mark = robot->mark_motion();
   auto q = robot->receive()->getActualQ();
   q[5] += 0.1;
-  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 3.0, true));
+  ASSERT_TRUE(control()->moveJ(q, 1.0, 3.0, true));
   ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }));
   EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3);
   move_joints();
   EXPECT_TRUE(robot->stop_motion());
-  EXPECT_EQ(robot->control()->getTCPOffset().size(), 6U);
-  EXPECT_THROW(robot->control()->getMassMatrix(), std::logic_error) << "the mass matrix needs both ranges";
+  EXPECT_EQ(robot->control_for_queries()->getTCPOffset().size(), 6U);
+  EXPECT_THROW(robot->control_for_queries()->getMassMatrix(), std::logic_error) << "the mass matrix needs both ranges";
 }
 
 TEST_P(UpperRangeTest, SupportsExtensionsWithParametersAndResults)
@@ -80,7 +80,7 @@ TEST_P(UpperRangeTest, SupportsScriptsWithTheirWatchdog)
 
 TEST_P(UpperRangeTest, SupportsTheWatchdog)
 {
-  ASSERT_TRUE(robot->control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
+  ASSERT_TRUE(control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
   ASSERT_TRUE(eventually([&] { return turning(); }));
   const double begin = robot_time();
   ASSERT_TRUE(eventually([&] { return robot_time() > begin + 1.5; })) << "longer than the watchdog's timeout";

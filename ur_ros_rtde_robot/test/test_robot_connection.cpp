@@ -22,7 +22,7 @@ TEST_F(RobotConnectionTest, BecomesReady)
   ASSERT_TRUE(becomes_ready());
   RecordProperty("ready_after_s", std::to_string(seconds_since(begin)));
   EXPECT_TRUE(robot->ready_to_move());
-  EXPECT_TRUE(robot->control()->isProgramRunning());
+  EXPECT_TRUE(robot->control_for_queries()->isProgramRunning());
   EXPECT_TRUE(robot->io()->setStandardDigitalOut(1, true));
   EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 2U) != 0; }));
   EXPECT_NE(robot->dashboard()->robotmode().find("RUNNING"), std::string::npos);
@@ -68,7 +68,7 @@ TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)
     controller.start(options);
     make_robot();
     EXPECT_TRUE(becomes_ready()) << version;
-    EXPECT_TRUE(robot->control()->isSteady()) << version;
+    EXPECT_TRUE(robot->control_for_queries()->isSteady()) << version;
     robot.reset();
     controller.stop();
   }
@@ -80,7 +80,7 @@ TEST_F(RobotConnectionTest, WaitsForControllerThatStartsLater)
   ASSERT_TRUE(eventually([&] { return log.count("Trying again") > 0; }));
   EXPECT_EQ(robot->status().state, RobotState::disconnected);
   EXPECT_EQ(robot->status().cause, ErrorCode::link_lost);
-  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->control_for_queries(), RobotError);
   EXPECT_FALSE(robot->ready_to_move());
   controller.start();
   EXPECT_TRUE(becomes_ready());
@@ -173,7 +173,7 @@ TEST_F(RobotConnectionTest, SurvivesControllerThatNeverReturns)
   make_both();
   controller.stop();
   ASSERT_TRUE(comes_to(RobotState::disconnected, ErrorCode::link_lost));
-  EXPECT_THROW(robot->control(), RobotError);
+  EXPECT_THROW(robot->control_for_queries(), RobotError);
   EXPECT_THROW(robot->io(), RobotError);
   EXPECT_FALSE(robot->stop_motion());
   controller.start();

@@ -35,7 +35,7 @@ TEST_F(SecondDriverTest, IsRejectedWithTheInputsInUseUntilTheFirstEnds)
     EXPECT_NE(message.find(part), std::string::npos) << message;
   }
   EXPECT_EQ(second->ready_to_move().error().code, ErrorCode::robot_in_use);
-  EXPECT_THROW(second->control(), RobotError);
+  EXPECT_THROW(second->control_for_queries(), RobotError);
   EXPECT_GT(std::abs(robot->latest()->actual_qd[0]), 0.7) << "the first one's motion goes on";
   EXPECT_TRUE(eventually([&] { return log_of_second.count("are in use") > 0; })) << told();
   ASSERT_TRUE(robot->stop_motion());

@@ -19,7 +19,7 @@ TEST_F(RobotMotionTest, IsTrackedFromStartToEnd)
   q[5] += 0.3;
   const auto mark = robot->mark_motion();
   EXPECT_FALSE(robot->motion_progress(mark).started);
-  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 3.0, true));
+  ASSERT_TRUE(control()->moveJ(q, 1.0, 3.0, true));
   ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).running; }));
   EXPECT_FALSE(robot->motion_progress(mark).finished());
   ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }, 10s));
@@ -35,7 +35,7 @@ TEST_F(RobotMotionTest, IsNotFinishedByTheEndOfThePreviousOne)
     q[5] += i % 2 == 0 ? 0.1 : -0.1;
     const auto mark = robot->mark_motion();
     ASSERT_FALSE(robot->motion_progress(mark).finished());
-    ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 5.0, true));
+    ASSERT_TRUE(control()->moveJ(q, 1.0, 5.0, true));
     ASSERT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); }, 10s));
     EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-3) << "motion " << i;
   }
@@ -83,7 +83,7 @@ TEST_P(RobotArrivalTest, IsReportedAtOnceAndNeverEarly)
     const std::lock_guard lock(mutex);
     mark = robot->mark_motion();
   }
-  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, GetParam(), true));
+  ASSERT_TRUE(control()->moveJ(q, 1.0, GetParam(), true));
   const auto seen = [this] {
     const std::lock_guard lock(mutex);
     return after_the_end.size() > 100;
@@ -107,7 +107,7 @@ TEST_F(RobotMotionTest, ToTheCurrentPositionEnds)
   make_both();
   const auto q = robot->receive()->getActualQ();
   const auto mark = robot->mark_motion();
-  ASSERT_TRUE(robot->control()->moveJ(q, 1.0, 3.0, true));
+  ASSERT_TRUE(control()->moveJ(q, 1.0, 3.0, true));
   EXPECT_TRUE(eventually([&] { return robot->motion_progress(mark).finished(); })) << log.text();
 }
 
@@ -300,7 +300,7 @@ TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
   ASSERT_TRUE(becomes_ready());
   const Generation begin = robot->generation();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}});
-  EXPECT_FALSE(robot->control()->setPayload(1.0, {0.0, 0.0, 0.0}));
+  EXPECT_FALSE(robot->control_for_queries()->setPayload(1.0, {0.0, 0.0, 0.0}));
   const Status possible = robot->motion_possible();
   EXPECT_TRUE(!possible || robot->generation() != begin) << "the robot has rejected the command";
   EXPECT_TRUE(possible || possible.error().code == ErrorCode::link_lost) << possible.error().message;
@@ -315,7 +315,7 @@ TEST_F(RobotMotionTest, BlockingCallReturnsWhenTheConnectionIsLost)
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
   std::atomic<bool> returned{false};
-  std::jthread blocked([&, control = robot->control()] {
+  std::jthread blocked([&, control = control()] {
     control->moveJ(q, 0.5, 1.0);
     returned = true;
   });
@@ -330,7 +330,7 @@ TEST_F(RobotMotionTest, BlockingCallDoesNotStarveTheWatchdog)
   make_both();
   auto q = robot->receive()->getActualQ();
   q[5] += 0.8;
-  EXPECT_TRUE(robot->control()->moveJ(q, 0.8, 3.0)) << log.text();
+  EXPECT_TRUE(control()->moveJ(q, 0.8, 3.0)) << log.text();
   EXPECT_NEAR(robot->latest()->actual_q[5], q[5], 1e-2);
   EXPECT_TRUE(robot->ready_to_move());
 }
@@ -345,7 +345,7 @@ TEST_F(RobotMotionTest, SharesTheControlInterfaceWithQueriesOfManyThreads)
     for (int i = 0; i < 4; ++i) {
       threads.emplace_back([&] {
         for (int n = 0; n < 10; ++n) {
-          answers += robot->control()->isSteady() ? 0 : 1;
+          answers += robot->control_for_queries()->isSteady() ? 0 : 1;
         }
       });
     }

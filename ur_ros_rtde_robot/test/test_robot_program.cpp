@@ -48,7 +48,7 @@ TEST_F(RobotProgramTest, RestartsControlProgramStoppedOnThePendant)
   make_both();
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(becomes_ready_again());
-  EXPECT_TRUE(robot->control()->isSteady());
+  EXPECT_TRUE(robot->control_for_queries()->isSteady());
 }
 
 TEST_F(RobotProgramTest, NeverTakesItsEndingProgramForAForeignOne)
@@ -58,11 +58,33 @@ TEST_F(RobotProgramTest, NeverTakesItsEndingProgramForAForeignOne)
   controller.start(options);
   make_robot();
   ASSERT_TRUE(becomes_ready());
-  for (int i = 0; i < 5; ++i) {
+  for (std::size_t i = 0; i < 5; ++i) {
     controller.control({{"command", "stop_program"}});
-    ASSERT_TRUE(becomes_ready_again());
+    ASSERT_TRUE(becomes_ready_again(i + 2));
   }
   EXPECT_EQ(log.count("another program"), 0U) << log.text();
+}
+
+TEST_F(RobotProgramTest, IsStartedBesideQueries)
+{
+  make_both();
+  std::atomic<int> answers{0};
+  const std::jthread asking([&](const std::stop_token & stop) {
+    while (!stop.stop_requested()) {
+      try {
+        answers += robot->control_for_queries()->getTCPOffset().size() == 6 ? 1 : 0;
+      } catch (const std::exception &) {
+        std::this_thread::sleep_for(1ms);  // the program does not run
+      }
+    }
+  });
+  for (std::size_t i = 0; i < 5; ++i) {
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(becomes_ready_again(i + 2)) << log.text();
+    const int before = answers;
+    ASSERT_TRUE(eventually([&] { return answers > before; }));
+  }
+  EXPECT_EQ(log.count("does not answer"), 0U) << log.text();
 }
 
 TEST_F(RobotProgramTest, TakesProgramThatRunsAfterAFailedStartForItsOwn)

@@ -59,7 +59,7 @@ TEST_F(StopTest, DeceleratesALinearMotionAlongItsLine)
 TEST_F(StopTest, EndsSpeedJ)
 {
   make_both();
-  ASSERT_TRUE(robot->control()->speedJ({0.4, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
+  ASSERT_TRUE(control()->speedJ({0.4, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
   ASSERT_TRUE(eventually([&] { return robot->latest()->actual_qd[0] > 0.35; }));
   recording = true;
   const auto report = robot->stop_motion(decelerating(1.0, 1.0));
@@ -72,7 +72,7 @@ TEST_F(StopTest, EndsSpeedJ)
 TEST_F(StopTest, EndsSpeedL)
 {
   make_both();
-  ASSERT_TRUE(robot->control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
+  ASSERT_TRUE(control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
   ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_speed[2] > 0.04; }));
   const auto report = robot->stop_motion();
   ASSERT_TRUE(report) << report.error().message;
@@ -87,7 +87,7 @@ TEST_F(StopTest, EndsServoJ)
   Sample sample = *robot->latest();
   for (int i = 0; i < 200; ++i) {
     q[5] += 0.001;
-    ASSERT_TRUE(robot->control()->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0)) << log.text();
+    ASSERT_TRUE(control()->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0)) << log.text();
     ASSERT_TRUE(robot->wait_for_next(sample, 1s));
   }
   EXPECT_TRUE(robot->is_moving());
@@ -106,7 +106,7 @@ TEST_F(StopTest, LeavesTheRobotReadyForTheNextMotion)
     ASSERT_TRUE(robot->stop_motion(decelerating(4.0, 2.0)));
     auto pose = robot->receive()->getActualTCPPose();
     pose[2] -= 0.02;
-    ASSERT_TRUE(robot->control()->moveL(pose, 0.2, 1.0)) << "motion " << i << "\n" << log.text();
+    ASSERT_TRUE(control()->moveL(pose, 0.2, 1.0)) << "motion " << i << "\n" << log.text();
   }
 }
 
@@ -115,7 +115,7 @@ TEST_F(StopTest, StopsAMotionThatWasJustCommanded)
   make_both();
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
-  ASSERT_TRUE(robot->control()->moveJ(q, 0.5, 1.0, true));
+  ASSERT_TRUE(control()->moveJ(q, 0.5, 1.0, true));
   const auto report = robot->stop_motion();
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::stop_command);
@@ -129,7 +129,7 @@ TEST_F(StopTest, StopsTheProgramDuringABlockingMotion)
   make_both();
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
-  std::jthread blocked([&, control = robot->control()] { control->moveJ(q, 0.5, 1.0); });
+  std::jthread blocked([&, control = control()] { control->moveJ(q, 0.5, 1.0); });
   ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
   auto options = decelerating(2.0, 2.0);
   options.timeout = 500ms;

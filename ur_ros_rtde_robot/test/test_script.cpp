@@ -43,7 +43,7 @@ struct ScriptTest : RobotFixture {
     const auto mark = robot->mark_motion();
     auto there = q;
     there[5] += 0.02;
-    if (!robot->control()->moveJ(there, 1.0, 2.0, true) ||
+    if (!control()->moveJ(there, 1.0, 2.0, true) ||
         !eventually([&] { return robot->motion_progress(mark).finished(); })) {
       return testing::AssertionFailure() << "the arm does not move\n" << log.text();
     }
@@ -120,7 +120,7 @@ TEST_F(ScriptTest, RejectsUnbalancedBlocksWithoutSending)
   EXPECT_EQ(report.end, ScriptEnd::rejected);
   EXPECT_EQ(report.error.code, ErrorCode::invalid_goal);
   EXPECT_EQ(report.line, 1) << report.error.message;
-  EXPECT_TRUE(robot->control()->isProgramRunning()) << "the control program was not disturbed";
+  EXPECT_TRUE(robot->control_for_queries()->isProgramRunning()) << "the control program was not disturbed";
 }
 
 TEST_F(ScriptTest, StopsTheArmWhenCanceled)
@@ -335,7 +335,7 @@ TEST_F(ScriptTest, KeepsTheControlInterfaceToItself)
     EXPECT_TRUE(robot->ready_to_move()) << "a command that preempts the script can be accepted";
     EXPECT_EQ(run_script("sync()").error.code, ErrorCode::busy);
     try {
-      robot->control();
+      robot->control_for_queries();
     } catch (const RobotError & error) {
       found = error.error().code;
     }
@@ -398,6 +398,25 @@ TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
     EXPECT_EQ(report.end, ScriptEnd::rejected) << report.error.message;
     EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
   }
+  EXPECT_TRUE(is_back());
+  EXPECT_EQ(robot->latest()->digital_outputs & 4U, 0U);
+}
+
+TEST_F(ScriptTest, IsNotSentAsSecondaryProgramAfterACancelThatTheThreadHasNotSeen)
+{
+  make_both();
+  std::stop_source cancel;
+  ScriptOptions options = secondary();
+  options.stop = cancel.get_token();
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (cancel.request_stop()) {  // right after the last look
+      return std::nullopt;
+    }
+    return Error{ErrorCode::canceled, "canceled"};
+  };
+  const auto report = run_script("sec s():\n  set_standard_digital_out(2, True)\nend\n", options);
+  EXPECT_EQ(report.end, ScriptEnd::rejected) << report.error.message;
+  EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
   EXPECT_TRUE(is_back());
   EXPECT_EQ(robot->latest()->digital_outputs & 4U, 0U);
 }

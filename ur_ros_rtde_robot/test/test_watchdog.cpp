@@ -36,7 +36,8 @@ class DriverProcess {
     Robot robot(options);
     robot.start();
     if (robot.wait_until_ready(30s)) {
-      robot.control()->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0);
+      const auto lease = robot.acquire({.resource = Resource::motion, .owner = "/test", .id = "1"});
+      robot.control(*lease)->speedJ({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0);
       std::this_thread::sleep_for(60s);
     }
     ::_exit(1);

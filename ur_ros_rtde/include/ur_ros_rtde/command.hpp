@@ -111,13 +111,7 @@ class Command<A>::GoalOfCommand final : public CommandGoal {
     if constexpr (requires { result.final_state; }) {
       result.final_state = to_arm_state(robot().latest());
     }
-    const Outcome actual = guarded([&] {
-      command_.fill_result(outcome, result);
-      return outcome;
-    });
-    if (actual.code() == ErrorCode::exception) {
-      write_standard_fields(actual, result);
-    }
+    const Outcome actual = write_outcome(command_, outcome, result);
     send(actual, &result);
   }
 
@@ -140,9 +134,7 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
       [this](const rcl_cxx::GoalUUID & id, const void * message) {
         return std::make_shared<GoalOfCommand>(*this, id, *static_cast<const Goal *>(message));
       },
-      [this](const Outcome & outcome, void * result) {
-        fill_result(outcome, *static_cast<Result *>(result));
-      });
+      make_missing_results(*this));
   host.add_command(name, *this);
 }
 

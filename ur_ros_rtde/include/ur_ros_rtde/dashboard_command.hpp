@@ -111,13 +111,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     if constexpr (requires { result.answer; }) {
       result.answer = has_run ? run_->answer() : std::string();
     }
-    const Outcome actual = guarded([&] {
-      command_.fill_result(outcome, result);
-      return outcome;
-    });
-    if (actual.code() == ErrorCode::exception) {
-      write_standard_fields(actual, result);
-    }
+    const Outcome actual = write_outcome(command_, outcome, result);
     send(actual, &result);
   }
 
@@ -139,9 +133,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
         return std::make_shared<GoalOfCommand>(*this, host, action, id,
                                                *static_cast<const typename A::Goal *>(message));
       },
-      [this](const Outcome & outcome, void * result) {
-        fill_result(outcome, *static_cast<Result *>(result));
-      });
+      make_missing_results(*this));
 }
 
 template <typename A>

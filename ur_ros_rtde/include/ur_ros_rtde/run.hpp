@@ -37,10 +37,14 @@ class Run {
   /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
   /// throw RobotError if the interface is not connected, or the goal must no longer move the arm; an
   /// exception that a command does not catch becomes the outcome of its goal. Call only what returns soon:
-  /// start motions asynchronously.
+  /// start motions asynchronously. A command without a resource that moves the arm gets
+  /// control_for_queries().
   Locked<ur_rtde::RTDEControlInterface> control();
-  /// For queries, from any thread.
-  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const { return context_.robot.control(); }
+  /// From any thread. Functions that start a motion or a mode, or end the control program, throw.
+  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const
+  {
+    return context_.robot.control_for_queries();
+  }
   Locked<ur_rtde::RTDEReceiveInterface> receive() const { return context_.robot.receive(); }
   Locked<ur_rtde::RTDEIOInterface> io() const { return context_.robot.io(); }
   Locked<ur_rtde::DashboardClient> dashboard() const { return context_.robot.dashboard(); }

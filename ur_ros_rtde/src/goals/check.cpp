@@ -34,10 +34,10 @@ Status check_reachable(Robot & robot, const std::string & field, const std::vect
   const std::string where =
       fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) m", field, target[0], target[1], target[2]);
   try {
-    if (robot.control()->isPoseWithinSafetyLimits(target)) {
+    if (robot.control_for_queries()->isPoseWithinSafetyLimits(target)) {
       return {};
     }
-    if (robot.control()->getInverseKinematicsHasSolution(target)) {
+    if (robot.control_for_queries()->getInverseKinematicsHasSolution(target)) {
       return failure(ErrorCode::safety_violation,
                      fmt::format("{} is outside the robot's safety limits", where));
     }

@@ -161,13 +161,12 @@ bool CommandGoal::started_modes() const
 
 bool CommandGoal::leaves_active(const Outcome & outcome) const
 {
-  const bool has_arm = moves_arm(command_->traits.resource);
-  const bool keeps_modes = !has_arm || (outcome && command_->traits.leaves_mode_active);
+  const bool keeps_modes = outcome && command_->traits.leaves_mode_active;
   const Activities allowed = active_before_ | (keeps_modes ? outlasting_modes : Activities());
   // Twice, because a goal may begin or end between two questions.
   for (int i = 0; i < 2; ++i) {
     if (robot().holder(Resource::motion) || robot().is_stopping()) {
-      return has_arm && !outcome && started_modes();  // the arm is in the hands of another goal, or of a stop
+      return !outcome && started_modes();  // the arm is in the hands of another goal, or of a stop
     }
     if (robot().activities().without(allowed).empty()) {
       return false;
@@ -289,13 +288,14 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
 
 Outcome CommandGoal::settle(const Outcome & outcome)
 {
-  const bool has_arm = moves_arm(command_->traits.resource);
-  if (command_->only_stops() || (has_arm && !lease_)) {
+  if (!moves_arm(command_->traits.resource) || command_->only_stops() || !lease_) {
     return outcome;
   }
-  const bool shares_arm = !has_arm || command_->traits.resource == Resource::mode;
-  const bool has_to_stop = has_arm && stop_request().reason();
-  if (shares_arm && !has_to_stop && !leaves_active(outcome)) {
+  if (is_finished()) {
+    return outcome;  // abandoned: it has been stopped, and has started nothing since
+  }
+  const bool shares_arm = command_->traits.resource == Resource::mode;
+  if (shares_arm && !stop_request().reason() && !leaves_active(outcome)) {
     return outcome;
   }
   StopOptions options = stop_options_;

@@ -6,18 +6,6 @@
 namespace ur_ros_rtde {
 namespace {
 
-/// The outcome of a goal without a result, or whose result cannot be sent. Always has an error code.
-Outcome missing_result(rcl_cxx::GoalStatus status)
-{
-  if (status == rcl_cxx::GoalStatus::unknown) {
-    return Outcome::failure(ErrorCode::exception,
-                            "this driver has no such goal: it has expired, or another driver with the same "
-                            "names has accepted it");
-  }
-  return Outcome::failure(ErrorCode::exception,
-                          "the goal ended without a result that can be sent: see the log of the driver");
-}
-
 Outcome answer(const std::vector<GoalQuery> & queries, const StopRequest & stop_request)
 {
   for (const GoalQuery & query : queries) {
@@ -41,9 +29,20 @@ Error client_lost()
       "received, or start command_server with on_client_lost:=continue"};
 }
 
+Outcome missing_result(rcl_cxx::GoalStatus status)
+{
+  if (status == rcl_cxx::GoalStatus::unknown) {
+    return Outcome::failure(ErrorCode::exception,
+                            "this driver has no such goal: it has expired, or another driver with the same "
+                            "names has accepted it");
+  }
+  return Outcome::failure(ErrorCode::exception,
+                          "the goal ended without a result that can be sent: see the log of the driver");
+}
+
 GoalServer::GoalServer(PluginHost & host, const Description & description, MakeGoal make_goal,
-                       WriteOutcome write_outcome)
-    : host_(host), make_goal_(std::move(make_goal))
+                       WriteMissingResult write_missing_result)
+    : host_(host), make_goal_(std::move(make_goal)), is_stop_(description.is_stop)
 {
   rcl_cxx::ActionServerCallbacks callbacks;
   callbacks.handle_goal = [this](const rcl_cxx::GoalUUID & id, const void * request) {
@@ -65,10 +64,7 @@ GoalServer::GoalServer(PluginHost & host, const Description & description, MakeG
       tell_host(handle.get_goal_id());
     };
   }
-  callbacks.fill_missing_result = [write = std::move(write_outcome)](rcl_cxx::GoalStatus status,
-                                                                     void * result) {
-    write(missing_result(status), result);
-  };
+  callbacks.fill_missing_result = std::move(write_missing_result);
   rcl_cxx::ActionServerOptions options;
   options.cancel_callback_group = host.stop_group();
   options.goal_callback_group = description.is_stop ? host.stop_group() : nullptr;
@@ -81,6 +77,9 @@ rcl_cxx::GoalDecision GoalServer::decide(const rcl_cxx::GoalUUID & id, const voi
   const auto goal = make_goal_(id, request);
   std::vector<GoalQuery> queries;
   const Outcome checked = guarded([&]() -> Outcome {
+    if (is_stop_) {
+      return goal->check(queries);  // it has begun to stop the arm, even if the goal cannot be executed
+    }
     const Status can_start = host_.goals().can_start();
     return can_start ? goal->check(queries) : can_start;
   });
@@ -126,10 +125,11 @@ void GoalServer::start(const std::shared_ptr<Handle> & handle)
     return;  // discarded: without its handle, the goal is aborted
   }
   goal->accept(handle);
-  const Status started = host_.goals().start(goal, [this, goal] {
+  const auto run = [this, goal] {
     goal->run();
     forget(goal->id());
-  });
+  };
+  const Status started = is_stop_ ? host_.goals().start_stop(goal, run) : host_.goals().start(goal, run);
   if (!started) {
     goal->end(started);
     forget(goal->id());

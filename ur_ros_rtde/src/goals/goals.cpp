@@ -13,17 +13,17 @@ Goals::~Goals()
 Status Goals::can_start() const
 {
   const std::lock_guard lock(mutex_);
-  return can_start_locked();
+  return can_start_locked(limit);
 }
 
-Status Goals::can_start_locked() const
+Status Goals::can_start_locked(std::size_t most) const
 {
   if (closed_) {
     return failure(ErrorCode::shutdown, "the node is being shut down");
   }
-  if (waiting_.size() + running_.size() >= limit) {
+  if (waiting_.size() + running_.size() >= most) {
     return failure(ErrorCode::busy,
-                   std::to_string(limit) + " goals are running, which is the limit: wait for one to end");
+                   std::to_string(most) + " goals are running, which is the limit: wait for one to end");
   }
   return {};
 }
@@ -31,9 +31,19 @@ Status Goals::can_start_locked() const
 Status Goals::start(std::shared_ptr<Goal> goal, std::function<void()> work)
 {
   const std::lock_guard lock(mutex_);
-  if (Status status = can_start_locked(); !status) {
-    return status;
-  }
+  const Status possible = can_start_locked(limit);
+  return possible ? start_locked(std::move(goal), std::move(work)) : possible;
+}
+
+Status Goals::start_stop(std::shared_ptr<Goal> goal, std::function<void()> work)
+{
+  const std::lock_guard lock(mutex_);
+  const Status possible = can_start_locked(limit + limit_of_stops);
+  return possible ? start_locked(std::move(goal), std::move(work)) : possible;
+}
+
+Status Goals::start_locked(std::shared_ptr<Goal> goal, std::function<void()> work)
+{
   if (idle_ <= waiting_.size()) {
     try {
       threads_.emplace_back([this] { execute_tasks(); });
@@ -109,19 +119,26 @@ void Goals::supervise_goals(const std::stop_token & stop)
     lock.lock();
     auto endings = std::exchange(endings_, {});
     lock.unlock();
-    std::erase_if(endings, [](const Ending & ending) { return ending.goal->is_finished(); });
-    for (Ending & ending : endings) {
-      if (!ending.deadline && ending.goal->is_stopped()) {
-        ending.deadline = Clock::now() + return_timeout;
-      }
-      if (ending.deadline && Clock::now() > *ending.deadline) {
-        ending.goal->abandon();
-      }
-    }
+    std::erase_if(endings, [this](Ending & ending) { return ending.goal->is_finished() || abandon_if_late(ending); });
     lock.lock();
     endings_.insert(endings_.end(), endings.begin(), endings.end());
     ending_.wait_for(lock, stop, interval, [] { return false; });
   }
+}
+
+bool Goals::abandon_if_late(Ending & ending)
+{
+  if (!ending.deadline && ending.goal->is_stopped()) {
+    ending.deadline = Clock::now() + return_timeout;
+  }
+  if (!ending.deadline || Clock::now() <= *ending.deadline) {
+    return false;
+  }
+  const auto abandon = [goal = ending.goal] { goal->abandon(); };
+  if (const Status started = start_stop(ending.goal, abandon); !started) {
+    abandon();  // the node ends
+  }
+  return true;
 }
 
 void Goals::end(const Error & why)

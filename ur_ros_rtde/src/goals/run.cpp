@@ -41,7 +41,7 @@ Locked<ur_rtde::RTDEControlInterface> Run::control()
 {
   mark_ = robot().mark_motion();
   last_call_ = Clock::now();
-  return context_.lease != nullptr ? context_.robot.control(*context_.lease) : context_.robot.control();
+  return context_.lease != nullptr ? context_.robot.control(*context_.lease) : control_for_queries();
 }
 
 Expected<StopReport> Run::wait_for_stop()
@@ -115,6 +115,7 @@ ScriptReport Run::run_script(const std::string & script, ScriptOptions options)
     publish_feedback_if_due();
     return context_.stop_request->reason();  // the script replaces the control program, which is no reason
   };
+  options.stop = context_.stop_request->token();
   const Lease none;
   return context_.robot.run_script(context_.lease != nullptr ? *context_.lease : none, script, options);
 }

@@ -73,6 +73,9 @@ void CommandServer::end_goals()
 {
   teleoperation_->stop(shutdown_error());
   host_->goals().end(shutdown_error());
+  if (!robot_->holder(Resource::motion) && robot_->activities().contains_any(outlasting_modes)) {
+    stopping_ = robot_->begin_stop({}, shutdown_error());  // no goal owns a mode that has outlasted its goal
+  }
 }
 
 std::vector<std::string> CommandServer::close()
@@ -80,6 +83,9 @@ std::vector<std::string> CommandServer::close()
   end_goals();  // nothing waits for the end of a session before the goals are told to end
   auto left = host_->goals().close(shutdown_error(), close_timeout);
   teleoperation_->close();
+  if (stopping_.valid()) {
+    stopping_.wait_for(close_timeout);
+  }
   return left;
 }
 

@@ -43,6 +43,7 @@ class CommandServer : public Server {
   std::unique_ptr<Teleoperation> teleoperation_;
   std::unique_ptr<DescriptionCheck> description_check_;
   std::unique_ptr<Diagnostics> diagnostics_;
+  std::shared_future<Expected<StopReport>> stopping_;  // of a mode, at the end of the node
   PluginChoice choice_;
 };
 

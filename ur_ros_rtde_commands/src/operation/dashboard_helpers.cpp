@@ -7,9 +7,9 @@ namespace {
 constexpr std::chrono::milliseconds answer_timeout{2000};
 }  // namespace
 
-std::string send_to_dashboard(const Robot & robot, const std::string & line)
+std::string send_to_dashboard(DashboardSession & dashboard, const std::string & line)
 {
-  const auto answer = robot.query_dashboard(line, answer_timeout);
+  const auto answer = dashboard.request(line, answer_timeout);
   if (!answer) {
     throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
                                                        answer.error().message)});
@@ -17,16 +17,16 @@ std::string send_to_dashboard(const Robot & robot, const std::string & line)
   return *answer;
 }
 
-std::string query_dashboard(const Robot & robot, const std::string & query)
+std::string query_dashboard(DashboardSession & dashboard, const std::string & query)
 {
-  const std::string answer = send_to_dashboard(robot, query);
+  const std::string answer = send_to_dashboard(dashboard, query);
   const auto colon = answer.find(": ");
   return colon == std::string::npos ? answer : answer.substr(colon + 2);
 }
 
-Status command_dashboard(const Robot & robot, const std::string & line, const std::string & reply)
+Status command_dashboard(DashboardSession & dashboard, const std::string & line, const std::string & reply)
 {
-  const std::string answer = send_to_dashboard(robot, line);
+  const std::string answer = send_to_dashboard(dashboard, line);
   if (answer.rfind(reply, 0) == 0) {
     return {};
   }

@@ -2,17 +2,17 @@
 
 #include <string>
 
-#include "ur_ros_rtde_robot/robot.hpp"
+#include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
 /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost) if there is no
 /// answer within 2 s.
-std::string send_to_dashboard(const Robot & robot, const std::string & line);
+std::string send_to_dashboard(DashboardSession & dashboard, const std::string & line);
 /// Sends a query and returns its answer without the label: "RUNNING" for "Robotmode: RUNNING".
-std::string query_dashboard(const Robot & robot, const std::string & query);
+std::string query_dashboard(DashboardSession & dashboard, const std::string & query);
 /// Sends a command. Fails (rejected_by_robot) with the answer unless it begins with `reply`.
-Status command_dashboard(const Robot & robot, const std::string & line, const std::string & reply);
+Status command_dashboard(DashboardSession & dashboard, const std::string & line, const std::string & reply);
 
 }  // namespace ur_ros_rtde

@@ -16,17 +16,17 @@ class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const Robot & robot = run.robot();
     const auto stopped = run.wait_for_stop();
     if (!stopped && stopped.error().code != ErrorCode::link_lost) {
       return stopped.error();
     }
-    send_to_dashboard(robot, "stop");  // fails if no program is running, which is not an error
-    if (const Status status = command_dashboard(robot, "power off", "Powering off"); !status) {
+    DashboardSession dashboard(run.robot().address());
+    send_to_dashboard(dashboard, "stop");  // fails if no program is running, which is not an error
+    if (const Status status = command_dashboard(dashboard, "power off", "Powering off"); !status) {
       return status;
     }
     return run_steps(run, goal.timeout, [&]() -> std::string {
-      const std::string mode = query_dashboard(robot, "robotmode");
+      const std::string mode = query_dashboard(dashboard, "robotmode");
       return mode == "POWER_OFF" ? "" : "powering off (mode " + mode + ")";
     });
   }

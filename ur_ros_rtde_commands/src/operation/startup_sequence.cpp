@@ -28,7 +28,7 @@ void StartupSequence::command(const std::string & line, const std::string & repl
   }
   last_command_ = line;
   last_command_time_ = now;
-  const Status status = command_dashboard(robot_, line, reply);
+  const Status status = command_dashboard(dashboard_, line, reply);
   last_rejection_ = status ? "" : "; " + status.error().message;
 }
 
@@ -38,30 +38,31 @@ void StartupSequence::close_popups()
 {
   if (goal_.close_popups && !popups_closed_) {
     popups_closed_ = true;
-    send_to_dashboard(robot_, "close popup");
-    send_to_dashboard(robot_, "close safety popup");
+    send_to_dashboard(dashboard_, "close popup");
+    send_to_dashboard(dashboard_, "close safety popup");
   }
 }
 
 std::string StartupSequence::step()
 {
+  dashboard_ = DashboardSession(robot_.address());  // with the control mode, local or remote, of now
   // The newest package may be older than a change of the robot mode, so the dashboard server is queried, too.
-  if (robot_.ready_to_move() && query_dashboard(robot_, "robotmode") == "RUNNING" && robot_.ready_to_move()) {
+  if (robot_.ready_to_move() && query_dashboard(dashboard_, "robotmode") == "RUNNING" && robot_.ready_to_move()) {
     return {};
   }
-  if (send_to_dashboard(robot_, "is in remote control") == "false") {
+  if (send_to_dashboard(dashboard_, "is in remote control") == "false") {
     require_operator(
         ErrorCode::not_ready,
         "the robot is in local control and accepts no remote commands: select remote control on the "
         "teach pendant (enabled under Settings, System, Remote Control), then try again");
   }
-  const std::string safety = query_dashboard(robot_, "safetymode");
+  const std::string safety = query_dashboard(dashboard_, "safetymode");
   if (safety != "NORMAL" && safety != "REDUCED") {
     popups_closed_ = false;
     return leave_safety_stop(safety);
   }
   close_popups();
-  const std::string mode = query_dashboard(robot_, "robotmode");
+  const std::string mode = query_dashboard(dashboard_, "robotmode");
   return mode == "RUNNING" ? start_program() : start_arm(mode);
 }
 
@@ -106,7 +107,7 @@ std::string StartupSequence::unlock_protective_stop()
         "then try again with true");
   }
   if (goal_.close_popups) {
-    send_to_dashboard(robot_, "close safety popup");
+    send_to_dashboard(dashboard_, "close safety popup");
   }
   command("unlock protective stop", "Protective stop releasing", command_interval);
   return "unlocking the protective stop" + last_rejection_;
@@ -122,7 +123,7 @@ std::string StartupSequence::restart_safety(const std::string & mode)
                     mode));
   }
   if (goal_.close_popups) {
-    send_to_dashboard(robot_, "close safety popup");
+    send_to_dashboard(dashboard_, "close safety popup");
   }
   command("restart safety", "Restarting safety", restart_interval);
   return "restarting the safety system" + last_rejection_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <ur_ros_rtde_msgs/action/make_ready.hpp>
 
+#include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -16,7 +17,10 @@ class StartupSequence {
  public:
   using Goal = ur_ros_rtde_msgs::action::MakeReady::Goal;
 
-  StartupSequence(const Robot & robot, const Goal & goal) : robot_(robot), goal_(goal) {}
+  StartupSequence(const Robot & robot, const Goal & goal)
+      : robot_(robot), goal_(goal), dashboard_(robot.address())
+  {
+  }
 
   /// Executes the next step and describes it. Returns an empty string when the robot is ready. Throws
   /// RobotError with the reason and the remedy if an operator has to act, or link_lost.
@@ -38,6 +42,7 @@ class StartupSequence {
 
   const Robot & robot_;
   const Goal & goal_;
+  DashboardSession dashboard_;  ///< of the current step
   std::string last_command_;
   std::string last_rejection_;
   Clock::time_point last_command_time_{};

@@ -1,13 +1,15 @@
 """Commands that do what they must not do do not keep the arm moving. The commands are those of test/plugins."""
 
 import pytest
+from geometry_msgs.msg import Vector3, Wrench
 from plugin_prefix import environment_of_test_commands
 from robot_fixtures import make_ready
 from support import HOME, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardQuery, MoveJ, SpeedJ
+from ur_ros_rtde_msgs.action import DashboardQuery, ForceMode, MoveJ, SpeedJ
+from ur_ros_rtde_msgs.msg import ErrorCode
 
-PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_as_output,dashboard/hangs]"
+PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_as_output,force_mode_start,dashboard/hangs]"
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
 
 
@@ -42,11 +44,30 @@ def test_ctrl_c_stops_the_arm_while_a_dashboard_command_hangs(cell):
     assert driver.wait(15.0) == 0
 
 
-@pytest.mark.parametrize("name", ["turns_as_mode", "turns_as_output"])
-def test_what_a_command_without_the_arm_leaves_turning_is_stopped(cell, name):
+def test_ctrl_c_ends_a_mode_without_a_goal_while_a_dashboard_command_hangs(cell):
+    simulator, driver, client = cell
+    client.send(ForceMode, "force_mode_start", compliant=[False, False, True, False, False, False],
+                wrench=Wrench(force=Vector3(z=-5.0)), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
+    assert client.send(DashboardQuery, "dashboard/hangs").accepted
+    begin = simulator.state()["timestamp"]
+    driver.interrupt()
+    assert time_to_rest(simulator, begin) < STOPPING_TIME
+    assert driver.wait(15.0) == 0
+
+
+def test_a_command_without_a_resource_that_moves_the_arm_cannot_move_it(cell):
+    simulator, _driver, client = cell
+    fields = {"joint_velocities": [0.5, 0.0, 0.0, 0.0, 0.0, 0.0], "acceleration": 2.0}
+    result = client.send(SpeedJ, "turns_as_output", **fields).result()
+    assert result.error_code == ErrorCode.EXCEPTION and "have to name Resource::motion" in result.message, result.message
+    assert simulator.is_at_rest() and simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0], abs=0.01)
+
+
+def test_what_a_command_of_a_mode_leaves_turning_is_stopped(cell):
     simulator, _driver, client = cell
     begin = simulator.state()["timestamp"]
-    client.send(SpeedJ, name, joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
+    client.send(SpeedJ, "turns_as_mode", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0).succeeded()
     assert time_to_rest(simulator, begin) < STOPPING_TIME
     wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would turn")
     assert simulator.is_at_rest() and abs(simulator.state()["actual"]["position"][0] - HOME[0]) < 0.5 * STOPPING_TIME / 2.0

@@ -101,8 +101,9 @@ class Robot {
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is
   /// unavailable. The calls of a holder that may not go on throw RobotError with the reason.
   Locked<ur_rtde::RTDEControlInterface> control(const Lease & lease);
-  /// For queries.
-  Locked<ur_rtde::RTDEControlInterface> control();
+  /// For callers without a lease: functions that start a motion or a mode, or end the program, throw
+  /// std::logic_error.
+  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const;
   Locked<ur_rtde::RTDEReceiveInterface> receive() const;
   Locked<ur_rtde::RTDEIOInterface> io() const;
   Locked<ur_rtde::DashboardClient> dashboard() const;
@@ -209,8 +210,8 @@ class Robot {
   int register_offset() const;
 
  private:
-  /// Whether the holder may command the arm.
-  std::function<Status()> permission(const Lease & lease) const;
+  /// Whether the holder may command the arm, for one call.
+  std::function<Expected<std::shared_ptr<void>>()> permission(const Lease & lease) const;
 
   class Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,6 +1,8 @@
 // The requests of other threads, and the stopper's thread.
 #include "motion/motion_stopper.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
@@ -44,7 +46,6 @@ class MotionStopper::Beginning {
   {
     const std::lock_guard lock(stopper_.mutex_);
     ++stopper_.beginning_;
-    stopper_.supervision_.reset();
   }
   ~Beginning()
   {
@@ -64,7 +65,7 @@ class MotionStopper::Beginning {
 MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver & state,
                              RtdeInterfaces & interfaces, InputRegisters & registers,
                              const MotionTracker & tracker, const StartedActivities & activities,
-                             const Arbiter & arbiter)
+                             const Arbiter & arbiter, LogFunction log)
     : options_(options),
       state_(state),
       interfaces_(interfaces),
@@ -72,6 +73,7 @@ MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver &
       tracker_(tracker),
       activities_(activities),
       arbiter_(arbiter),
+      log_(std::move(log)),
       last_(completed(StopReport{})),
       thread_([this](const std::stop_token & stop) { serve(stop); })
 {
@@ -222,6 +224,9 @@ void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
     }
     lock.lock();
   } while (options_changed_);
+  if (!result) {
+    log_(LogLevel::warn, fmt::format("standstill is not confirmed: {}", result.error().message));
+  }
   last_ = operation_->stopping;
   operation_->promise.set_value(std::move(result));
   operation_.reset();

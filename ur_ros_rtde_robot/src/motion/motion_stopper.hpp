@@ -18,6 +18,7 @@
 #include "motion/arbiter.hpp"
 #include "motion/motion_tracker.hpp"
 #include "motion/started_activities.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -36,7 +37,7 @@ class MotionStopper {
 
   MotionStopper(const RobotOptions & options, const StateReceiver & state, RtdeInterfaces & interfaces,
                 InputRegisters & registers, const MotionTracker & tracker,
-                const StartedActivities & activities, const Arbiter & arbiter);
+                const StartedActivities & activities, const Arbiter & arbiter, LogFunction log);
   ~MotionStopper() { close(); }
   MotionStopper(const MotionStopper &) = delete;
   MotionStopper & operator=(const MotionStopper &) = delete;
@@ -98,6 +99,7 @@ class MotionStopper {
   Expected<StopReport> execute(const StopOptions & options);
   Expected<StopReport> stop_without_rtde() const;
   bool is_done(const StopOptions & options) const;
+  Status end_call_of_revoked_holder();
   Status stop_by_command(const StopOptions & options);
   Status stop_by_dashboard(const StopOptions & options);
   Status stop_by_watchdog(const StopOptions & options);
@@ -122,6 +124,7 @@ class MotionStopper {
   const MotionTracker & tracker_;
   const StartedActivities & activities_;
   const Arbiter & arbiter_;
+  const LogFunction log_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

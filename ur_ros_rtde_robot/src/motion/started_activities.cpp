@@ -2,6 +2,7 @@
 
 #include <ur_rtde/rtde_control_interface.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -52,7 +53,20 @@ Activities StartedActivities::now() const
     result = result | Activity::extension;
   }
   const std::lock_guard lock(mutex_);
+  if (std::any_of(calls_.begin(), calls_.end(), [](const auto & permit) { return permit->revoked(); })) {
+    result = result | Activity::call;
+  }
   return fence_ ? result | Activity::script : result;
+}
+
+std::shared_ptr<void> StartedActivities::begin_call(std::shared_ptr<const Permit> permit)
+{
+  const std::lock_guard lock(mutex_);
+  const auto call = calls_.insert(calls_.end(), std::move(permit));
+  return {nullptr, [this, call](void *) {
+            const std::lock_guard end(mutex_);
+            calls_.erase(call);
+          }};
 }
 
 StartedActivities::Script::Script(StartedActivities & activities, std::function<void()> fence)

@@ -2,11 +2,14 @@
 
 #include <atomic>
 #include <functional>
+#include <list>
+#include <memory>
 #include <mutex>
 
 #include "connection/rtde/input_registers.hpp"
 #include "connection/rtde/rtde_interfaces.hpp"
 #include "motion/motion_tracker.hpp"
+#include "motion/permit.hpp"
 #include "ur_ros_rtde_robot/motion/activity.hpp"
 
 namespace ur_ros_rtde {
@@ -22,6 +25,10 @@ class StartedActivities {
   }
 
   Activities now() const;
+
+  /// A call of the holder of `permit`, which may start something, until the end of the returned object. To be
+  /// used before the permit is checked: a stop that revokes it afterwards finds the call.
+  std::shared_ptr<void> begin_call(std::shared_ptr<const Permit> permit);
 
   /// A script that runs, or is about to run, in place of the control program.
   class Script {
@@ -45,6 +52,7 @@ class StartedActivities {
   const InputRegisters & registers_;
   const MotionTracker & tracker_;
   mutable std::mutex mutex_;
+  std::list<std::shared_ptr<const Permit>> calls_;
   std::function<void()> fence_;  ///< empty: no script
   std::atomic<bool> script_begun_ = false;
 };

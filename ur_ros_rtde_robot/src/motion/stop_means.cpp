@@ -203,8 +203,18 @@ Status MotionStopper::with_control(double answer_timeout, const std::function<bo
   }
 }
 
+/// Afterwards, it is known what the call has started, and it starts nothing any more.
+Status MotionStopper::end_call_of_revoked_holder()
+{
+  return activities_.now().contains(Activity::call) ? with_control(0.0, [](Control &) { return true; })
+                                                    : Status();
+}
+
 Status MotionStopper::stop_by_command(const StopOptions & options)
 {
+  if (Status ended = end_call_of_revoked_holder(); !ended) {
+    return ended;
+  }
   const Activities started = activities_.now().without(options.keep);
   if (started.contains(Activity::script)) {
     return failure(ErrorCode::not_ready, "a script runs in place of the control program");

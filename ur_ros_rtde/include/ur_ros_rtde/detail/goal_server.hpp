@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ur_ros_rtde/detail/goal.hpp"
+#include "ur_ros_rtde/detail/guarded.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 
 namespace ur_ros_rtde {
@@ -26,11 +27,12 @@ class GoalServer {
   };
   /// `request`: an A::Goal of the action, which outlives the goal.
   using MakeGoal = std::function<std::shared_ptr<Goal>(const rcl_cxx::GoalUUID & id, const void * request)>;
-  /// Writes the outcome of a goal without a result that can be sent into an A::Result. May throw.
-  using WriteOutcome = std::function<void(const Outcome & outcome, void * result)>;
+  /// Writes the A::Result of a goal without a result that can be sent. Called by the thread that serves stops:
+  /// must not call a plugin.
+  using WriteMissingResult = std::function<void(rcl_cxx::GoalStatus status, void * result)>;
 
   GoalServer(PluginHost & host, const Description & description, MakeGoal make_goal,
-             WriteOutcome write_outcome);
+             WriteMissingResult write_missing_result);
   GoalServer(const GoalServer &) = delete;
   GoalServer & operator=(const GoalServer &) = delete;
 
@@ -48,6 +50,7 @@ class GoalServer {
 
   PluginHost & host_;
   const MakeGoal make_goal_;
+  const bool is_stop_;
   mutable std::mutex mutex_;
   std::map<rcl_cxx::GoalUUID, std::shared_ptr<Goal>> goals_;
   rcl_cxx::ActionServer::SharedPtr server_;  ///< last: it calls the rest
@@ -55,5 +58,39 @@ class GoalServer {
 
 /// The reason for stopping a goal whose client has disappeared.
 Error client_lost();
+
+/// The outcome of a goal without a result, or whose result cannot be sent. Always has an error code.
+Outcome missing_result(rcl_cxx::GoalStatus status);
+
+/// Lets `command` write the outcome of a goal into its result. Returns the outcome that was written: an
+/// exception of the command is one.
+template <typename C, typename Result>
+Outcome write_outcome(const C & command, const Outcome & outcome, Result & result)
+{
+  Outcome actual = guarded([&] {
+    command.fill_result(outcome, result);
+    return outcome;
+  });
+  if (actual.code() == ErrorCode::exception) {
+    write_standard_fields(actual, result);
+  }
+  return actual;
+}
+
+/// Asks `command` once for the results of all goals that have none.
+template <typename C>
+GoalServer::WriteMissingResult make_missing_results(const C & command)
+{
+  using Result = typename C::Result;
+  const auto make = [&](rcl_cxx::GoalStatus status) {
+    Result result;
+    write_outcome(command, missing_result(status), result);
+    return result;
+  };
+  return [unknown = make(rcl_cxx::GoalStatus::unknown), known = make(rcl_cxx::GoalStatus::aborted)](
+             rcl_cxx::GoalStatus status, void * result) {
+    *static_cast<Result *>(result) = status == rcl_cxx::GoalStatus::unknown ? unknown : known;
+  };
+}
 
 }  // namespace ur_ros_rtde

@@ -20,8 +20,9 @@ namespace ur_ros_rtde {
 /// of the time that a new thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
 class Goals {
  public:
-  /// Largest number of goals that run at the same time, and of threads.
+  /// Largest number of goals that run at the same time. Stops have threads of their own beside these.
   static constexpr std::size_t limit = 64;
+  static constexpr std::size_t limit_of_stops = 16;
   /// From the standstill after Goal::stop() to the result, if the command does not return.
   static constexpr std::chrono::milliseconds return_timeout{500};
 
@@ -36,6 +37,8 @@ class Goals {
   /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close() and if `limit` goals are
   /// running.
   Status start(std::shared_ptr<Goal> goal, std::function<void()> work);
+  /// The same for a goal that stops the arm: succeeds even if `limit` other goals are running.
+  Status start_stop(std::shared_ptr<Goal> goal, std::function<void()> work);
   /// Abandons `goal`, which was told to end, if it has no result `return_timeout` after the arm is at rest.
   void supervise(std::shared_ptr<Goal> goal);
   /// Tells all goals to end, and rejects new ones. Returns at once.
@@ -54,9 +57,12 @@ class Goals {
     std::optional<Clock::time_point> deadline;  ///< once the arm is at rest
   };
 
-  Status can_start_locked() const;
+  Status can_start_locked(std::size_t most) const;
+  Status start_locked(std::shared_ptr<Goal> goal, std::function<void()> work);
   void execute_tasks();
   void supervise_goals(const std::stop_token & stop);
+  /// In a thread of its own: what a plugin writes into the result may hang, as its command does.
+  bool abandon_if_late(Ending & ending);
   std::vector<std::shared_ptr<Goal>> running_goals_locked() const;
 
   mutable std::mutex mutex_;

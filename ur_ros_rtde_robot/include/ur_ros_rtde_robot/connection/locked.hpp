@@ -40,16 +40,17 @@ HeldLock held(InterfaceLock * lock);
 HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout);
 
 /// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
-/// holds the interface's lock for one call (execute-around pointer): `robot.control()->moveL(pose, speed,
-/// acceleration, true);` A call throws RobotError (busy) if the call of another thread is still running after
-/// `timeout`, and with the reason if the caller may no longer command the robot. The interface stays alive
-/// while a Locked refers to it, but may lose its connection: get a Locked from the robot for each use instead
-/// of storing it.
+/// holds the interface's lock for one call (execute-around pointer): `robot.control(lease)->moveL(pose,
+/// speed, acceleration, true);` A call throws RobotError (busy) if the call of another thread is still running
+/// after `timeout`, and with the reason if the caller may no longer command the robot. The interface stays
+/// alive while a Locked refers to it, but may lose its connection: get a Locked from the robot for each use
+/// instead of storing it.
 template <class T>
 class Locked {
  public:
-  /// Evaluated with the lock held, so that no call begins after a stop has taken the lock.
-  using Permission = std::function<Status()>;
+  /// Evaluated with the lock held, so that no call begins after a stop has taken the lock. What it returns is
+  /// kept for as long as the call lasts.
+  using Permission = std::function<Expected<std::shared_ptr<void>>()>;
 
   class Call {
    public:
@@ -57,9 +58,11 @@ class Locked {
         : object_(locked.object_), held_(acquire(*locked.lock_, locked.what_, locked.timeout_))
     {
       if (locked.permission_) {
-        if (const Status permitted = locked.permission_(); !permitted) {
+        auto permitted = locked.permission_();
+        if (!permitted) {
           throw RobotError(permitted.error());
         }
+        permitted_ = *std::move(permitted);
       }
     }
     T * operator->() const { return object_.get(); }
@@ -68,6 +71,7 @@ class Locked {
    private:
     std::shared_ptr<T> object_;
     HeldLock held_;
+    std::shared_ptr<void> permitted_;  ///< last: ends before the lock is released
   };
 
   Locked(std::shared_ptr<T> object, std::shared_ptr<InterfaceLock> lock, const char * what,

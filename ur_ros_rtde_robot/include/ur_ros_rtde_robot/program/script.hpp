@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct ScriptOptions {
   /// Called every few milliseconds in the calling thread: the reason to stop the script early, if there is
   /// one. In a command: `[&run] { return run.stop_reason(); }`.
   std::function<std::optional<Error>()> stop_reason;
+  /// For a secondary program: nothing is sent after this was requested, however late the calling thread is.
+  /// stop_reason then names why.
+  std::stop_token stop;
   /// Called in the calling thread with each line of `textmsg` as it arrives.
   std::function<void(const std::string & text)> on_text;
 };

@@ -338,6 +338,21 @@ std::optional<Locked<RTDEControlInterface>> RtdeInterfaces::control() const
   return control_ ? std::optional(Locked(control_, control_lock_, "control interface")) : std::nullopt;
 }
 
+std::optional<Locked<RTDEControlInterface>> RtdeInterfaces::control_for_queries() const
+{
+  const auto interface = control_interface();
+  if (!interface) {
+    return std::nullopt;
+  }
+  const auto refuse_motions = [interface]() -> std::shared_ptr<void> {
+    interface->refuseMotions(
+        "a function that moves the arm or ends its program needs a lease of the arm: the traits() of the "
+        "command have to name Resource::motion, Resource::mode or Resource::script");
+    return {nullptr, [interface](void *) { interface->refuseMotions(nullptr); }};
+  };
+  return Locked(interface, control_lock_, "control interface").permitted_by(refuse_motions);
+}
+
 std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const
 {
   const std::lock_guard lock(mutex_);

@@ -71,6 +71,8 @@ class RtdeInterfaces {
 
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_interface() const;
   std::optional<Locked<ur_rtde::RTDEControlInterface>> control() const;
+  /// The same, but functions that start a motion or end the program throw std::logic_error.
+  std::optional<Locked<ur_rtde::RTDEControlInterface>> control_for_queries() const;
   std::optional<Locked<ur_rtde::RTDEIOInterface>> io() const;
   /// Locks the control interface before all threads that wait for it, abandoning the command that holds the
   /// lock. Null after `timeout`.

@@ -107,18 +107,15 @@ void ScriptMonitor::run(const script::Program & program)
   program_ = &program;
   link_ = state_.latest().value_or(Sample{}).link;
   sent_ = Clock::now();
-  if (options_.stop_reason) {
-    if (const auto reason = options_.stop_reason()) {
-      complete(ScriptEnd::rejected, reason->code, reason->message);
-      return;
-    }
-  }
-  if (options_.kind == ScriptKind::program && replaced_before_begin()) {
+  if (complete_if_told(ScriptEnd::rejected) ||
+      (options_.kind == ScriptKind::program && replaced_before_begin())) {
     return;
   }
   if (const auto sent = primary_.send(program.text.text(), send_timeout); !sent) {
-    complete(ScriptEnd::link_lost, sent.error().code,
-             "the script could not be sent: " + sent.error().message);
+    if (!complete_if_told(ScriptEnd::rejected)) {
+      complete(ScriptEnd::link_lost, sent.error().code,
+               "the script could not be sent: " + sent.error().message);
+    }
     return;
   }
   while (!update()) {
@@ -298,12 +295,13 @@ bool ScriptMonitor::complete_if_it_must_stop()
       return complete(ScriptEnd::robot_stopped, blocker->code, blocker->message);
     }
   }
-  if (options_.stop_reason) {
-    if (const auto reason = options_.stop_reason()) {
-      return complete(ScriptEnd::interrupted, reason->code, reason->message);
-    }
-  }
-  return complete_if_late();
+  return complete_if_told(ScriptEnd::interrupted) || complete_if_late();
+}
+
+bool ScriptMonitor::complete_if_told(ScriptEnd end)
+{
+  const auto reason = options_.stop_reason ? options_.stop_reason() : std::nullopt;
+  return reason && complete(end, reason->code, reason->message);
 }
 
 bool ScriptMonitor::complete_if_late()

@@ -48,6 +48,8 @@ class ScriptMonitor {
   bool complete_if_failed();
   bool complete_if_ended();
   bool complete_if_it_must_stop();
+  /// By ScriptOptions::stop_reason.
+  bool complete_if_told(ScriptEnd end);
   bool complete_if_late();
 
   void on_message(const PrimaryMessage & message);

@@ -133,6 +133,7 @@ ScriptReport ScriptRunner::run(Permit * holder, const std::string & script, cons
   }
   ScriptMonitor monitor(std::move(*primary), state_, markers, options);
   if (secondary) {
+    const std::stop_callback fence(options.stop, [&monitor] { monitor.fence(); });
     monitor.run(*program);
     return monitor.report();
   }
