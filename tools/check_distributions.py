@@ -194,9 +194,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sources", nargs="?", type=pathlib.Path, help="folder with the ROS packages of a distribution")
     parser.add_argument("--compiler", action="append", help="compiler; may be repeated (default: g++)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "build",
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / ".ur" / "jazzy" / "build",
                         help="build folder of colcon with compile_commands.json files (default: %(default)s)")
-    parser.add_argument("--prefix", type=pathlib.Path, default=ROOT / ".ur" / "kilted" / "venv",
+    parser.add_argument("--prefix", type=pathlib.Path, default=ROOT / ".ur" / "jazzy" / "venv",
                         help="prefix of the ROS headers of that build (default: %(default)s)")
     parser.add_argument("--files", default="", help="regular expression of the files to compile (default: all)")
     parser.add_argument("--output", type=pathlib.Path, help="folder for the generated headers, which are kept (default: SOURCES-generated)")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the URDFs of ur_ros_rtde_description: docs/images/models.png. Run it with the Python of the build.
 
-    .ur/kilted/venv/bin/python tools/draw_models.py docs/images/models.png
+    .ur/jazzy/venv/bin/python tools/draw_models.py docs/images/models.png
 """
 
 import argparse

@@ -2,7 +2,7 @@
 """Draws the viewer during the demo: docs/images/viewer.png, and the animation docs/images/viewer_demo.png (APNG).
 
     ./ur build
-    .ur/kilted/venv/bin/python tools/draw_viewer.py
+    .ur/jazzy/venv/bin/python tools/draw_viewer.py
 
 The simulated time passes slowly, because the scene is rendered without a GPU.
 """

@@ -29,7 +29,7 @@ def test_a_sourced_distribution_is_the_default(setup_script, monkeypatch):
     setup_script("humble")
     assert Layout.of_environment() == Layout(INSTALLED) and Layout(INSTALLED).base.name == "installed_humble"
     monkeypatch.setenv("ROS_WHEELS_PREFIX", "/venv")  # our own shell
-    assert sourced() == "" and Layout.of_environment() == Layout("kilted")
+    assert sourced() == "" and Layout.of_environment() == Layout()
 
 
 def test_its_variables_are_kept_behind_ours(setup_script):
@@ -70,7 +70,7 @@ def test_another_distribution_is_rejected(setup_script):
         with pytest.raises(console.Failure) as failure:
             venv.python_of_ros(Layout(INSTALLED))
         text = str(failure.value)
-        assert found in text and "humble, jazzy, kilted, lyrical, rolling" in text and "--ros kilted" in text, text
+        assert found in text and "humble, jazzy, kilted, lyrical, rolling" in text and "--ros jazzy" in text, text
 
 
 def test_a_python_without_its_rclpy_is_rejected(setup_script, monkeypatch, tmp_path):

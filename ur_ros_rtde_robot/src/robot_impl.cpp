@@ -277,9 +277,12 @@ Robot::Impl::~Impl()
                ? stopper.begin({}, Error{ErrorCode::shutdown, "the driver is shutting down"})
                : Stopping();
   };
-  std::ignore = stop();  // now: the end of the manager's thread takes time
+  auto stopping = stop();  // now: the end of the manager's thread takes time
   manager.stop();
-  if (const auto stopping = stop(); stopping.valid()) {
+  if (!stopping.valid()) {
+    stopping = stop();  // of a program that the manager has just started
+  }
+  if (stopping.valid()) {
     stopping.wait();  // the stopper logs a failure
     end_program();
   }

@@ -90,6 +90,9 @@ std::function<Expected<std::shared_ptr<void>>()> Robot::permission(const Lease &
     if (!permit) {
       return failure(ErrorCode::exception, "there is no lease");
     }
+    if (auto why = permit->revoked()) {
+      return tl::unexpected(*std::move(why));  // without becoming an activity
+    }
     auto call = impl_->activities.begin_call(permit);
     if (auto why = permit->revoked()) {
       return tl::unexpected(*std::move(why));

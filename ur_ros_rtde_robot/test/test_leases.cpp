@@ -208,6 +208,20 @@ TEST_F(LeaseTest, AStopEndsACallThatIsAboutToStartAMotion)
   EXPECT_TRUE(stays_at_rest());
 }
 
+/// They consist of several steps, between which a stop would find nothing to end.
+TEST_F(LeaseTest, FunctionsThatReplaceTheProgramAreRejected)
+{
+  const Lease lease = acquire();
+  const std::string script = "def f():\n  movej([0, 0, 0, 0, 0, 0])\nend\n";
+  const std::vector<std::vector<double>> path{{0.0, -1.5, 1.5, 0.0, 0.0, 0.0, 0.5, 1.0, 0.0}};
+  EXPECT_THROW(robot->control(lease)->sendCustomScript(script), std::logic_error);
+  EXPECT_THROW(robot->control(lease)->sendCustomScriptFunction("f", script), std::logic_error);
+  EXPECT_THROW(robot->control(lease)->moveJ(path, true), std::logic_error);
+  EXPECT_THROW(robot->control(lease)->moveL(path, true), std::logic_error);
+  EXPECT_TRUE(robot->may_continue(lease)) << "the control program goes on";
+  EXPECT_TRUE(at_rest());
+}
+
 TEST_F(LeaseTest, AStopOfAnArmAtRestWaitsForNoQuery)
 {
   const Lease lease = acquire();
@@ -227,7 +241,7 @@ TEST_F(LeaseTest, NothingMovesWithoutOne)
   EXPECT_THROW(control->speedJ(turning, 2.0, 0.0), std::logic_error);
   EXPECT_THROW(control->servoJ(q, 0.0, 0.0, 0.002, 0.05, 300.0), std::logic_error);
   EXPECT_THROW(control->freedriveMode(), std::logic_error);
-  EXPECT_THROW(control->sendCustomScript("def f():\n  movej([0, 0, 0, 0, 0, 0])\nend\n"), std::logic_error);
+  EXPECT_THROW(control->reuploadScript(), std::logic_error);
   EXPECT_THROW(control->stopScript(), std::logic_error);
   EXPECT_TRUE(control->isSteady()) << "a query works";
   EXPECT_TRUE(robot->activities().empty());

@@ -37,8 +37,8 @@ class Run {
   /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
   /// throw RobotError if the interface is not connected, or the goal must no longer move the arm; an
   /// exception that a command does not catch becomes the outcome of its goal. Call only what returns soon:
-  /// start motions asynchronously. A command without a resource that moves the arm gets
-  /// control_for_queries().
+  /// start motions asynchronously. A command without a lease of the arm, because of its
+  /// resource or because it stops the arm, gets control_for_queries().
   Locked<ur_rtde::RTDEControlInterface> control();
   /// From any thread. Functions that start a motion or a mode, or end the control program, throw.
   Locked<ur_rtde::RTDEControlInterface> control_for_queries() const

@@ -149,20 +149,23 @@ void CommandGoal::on_stop(const Error & why)
   }
   const std::lock_guard lock(lease_mutex_);
   robot().request_stop(lease_, options, why, braking);
-  if (command_->traits.resource == Resource::mode && started_modes()) {
+  if (command_->traits.resource == Resource::mode && leaves_active(why)) {
     robot().begin_stop(options, why);  // a mode cannot be ended while another goal moves the arm
   }
 }
 
 bool CommandGoal::started_modes() const
 {
-  return robot().activities().without(active_before_).contains_any(outlasting_modes);
+  return robot().activities().without(*active_before_).contains_any(outlasting_modes | Activity::call);
 }
 
 bool CommandGoal::leaves_active(const Outcome & outcome) const
 {
+  if (!active_before_) {
+    return false;
+  }
   const bool keeps_modes = outcome && command_->traits.leaves_mode_active;
-  const Activities allowed = active_before_ | (keeps_modes ? outlasting_modes : Activities());
+  const Activities allowed = *active_before_ | (keeps_modes ? outlasting_modes : Activities());
   // Twice, because a goal may begin or end between two questions.
   for (int i = 0; i < 2; ++i) {
     if (robot().holder(Resource::motion) || robot().is_stopping()) {
@@ -292,7 +295,7 @@ Outcome CommandGoal::settle(const Outcome & outcome)
     return outcome;
   }
   if (is_finished()) {
-    return outcome;  // abandoned: it has been stopped, and has started nothing since
+    return outcome;  // abandoned: it was stopped, and its calls have been rejected since
   }
   const bool shares_arm = command_->traits.resource == Resource::mode;
   if (shares_arm && !stop_request().reason() && !leaves_active(outcome)) {
@@ -300,7 +303,7 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   }
   StopOptions options = stop_options_;
   if (outcome) {
-    options.keep = active_before_ | (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
+    options.keep = active_before_.value_or(Activities()) | (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
     if (!stop_request().reason() && robot().is_at_rest_except(options.keep)) {
       return outcome;
     }

@@ -108,7 +108,7 @@ void GoalServer::start_queries(const std::shared_ptr<Goal> & goal, std::vector<G
     return reject(*goal, why);
   };
   const Status started =
-      host_.goals().start(goal, [goal, pending = std::move(queries), respond, reject_and_forget] {
+      start_work(goal, [goal, pending = std::move(queries), respond, reject_and_forget] {
         const Outcome outcome =
             guarded(goal->stop_request(), [&] { return answer(pending, goal->stop_request()); });
         respond(outcome ? rcl_cxx::GoalResponse() : reject_and_forget(outcome.error()));
@@ -125,15 +125,21 @@ void GoalServer::start(const std::shared_ptr<Handle> & handle)
     return;  // discarded: without its handle, the goal is aborted
   }
   goal->accept(handle);
-  const auto run = [this, goal] {
+  const Status started = start_work(goal, [this, goal] {
     goal->run();
     forget(goal->id());
-  };
-  const Status started = is_stop_ ? host_.goals().start_stop(goal, run) : host_.goals().start(goal, run);
+  });
   if (!started) {
-    goal->end(started);
-    forget(goal->id());
+    host_.goals().end(goal, [this, goal, started] {
+      goal->end(started);
+      forget(goal->id());
+    });
   }
+}
+
+Status GoalServer::start_work(const std::shared_ptr<Goal> & goal, std::function<void()> work)
+{
+  return host_.goals().start(goal, std::move(work), is_stop_ ? Goals::Work::stop : Goals::Work::goal);
 }
 
 void GoalServer::stop(const rcl_cxx::GoalUUID & id, const Error & why) const

@@ -1,5 +1,7 @@
 #include "ur_ros_rtde/detail/goals.hpp"
 
+#include <algorithm>
+
 namespace ur_ros_rtde {
 
 Goals::Goals() : supervisor_([this](const std::stop_token & stop) { supervise_goals(stop); }) {}
@@ -10,40 +12,37 @@ Goals::~Goals()
   threads_.clear();  // waits without a limit: objects that the threads use must outlive them
 }
 
-Status Goals::can_start() const
+Status Goals::can_start(Work kind) const
 {
   const std::lock_guard lock(mutex_);
-  return can_start_locked(limit);
+  return can_start_locked(kind);
 }
 
-Status Goals::can_start_locked(std::size_t most) const
+Status Goals::can_start_locked(Work kind) const
 {
   if (closed_) {
     return failure(ErrorCode::shutdown, "the node is being shut down");
   }
-  if (waiting_.size() + running_.size() >= most) {
+  if (kind == Work::end) {
+    return {};
+  }
+  const auto is_same = [kind](const Task & task) { return task.kind == kind; };
+  const auto count = std::count_if(waiting_.begin(), waiting_.end(), is_same) +
+                     std::count_if(running_.begin(), running_.end(), is_same);
+  const std::size_t most = kind == Work::stop ? limit_of_stops : limit;
+  if (static_cast<std::size_t>(count) >= most) {
     return failure(ErrorCode::busy,
                    std::to_string(most) + " goals are running, which is the limit: wait for one to end");
   }
   return {};
 }
 
-Status Goals::start(std::shared_ptr<Goal> goal, std::function<void()> work)
+Status Goals::start(std::shared_ptr<Goal> goal, std::function<void()> work, Work kind)
 {
   const std::lock_guard lock(mutex_);
-  const Status possible = can_start_locked(limit);
-  return possible ? start_locked(std::move(goal), std::move(work)) : possible;
-}
-
-Status Goals::start_stop(std::shared_ptr<Goal> goal, std::function<void()> work)
-{
-  const std::lock_guard lock(mutex_);
-  const Status possible = can_start_locked(limit + limit_of_stops);
-  return possible ? start_locked(std::move(goal), std::move(work)) : possible;
-}
-
-Status Goals::start_locked(std::shared_ptr<Goal> goal, std::function<void()> work)
-{
+  if (Status status = can_start_locked(kind); !status) {
+    return status;
+  }
   if (idle_ <= waiting_.size()) {
     try {
       threads_.emplace_back([this] { execute_tasks(); });
@@ -52,9 +51,16 @@ Status Goals::start_locked(std::shared_ptr<Goal> goal, std::function<void()> wor
                      std::string("cannot start a thread for the goal: ") + error.what());
     }
   }
-  waiting_.push_back({std::move(goal), std::move(work)});
+  waiting_.push_back({std::move(goal), std::move(work), kind});
   started_.notify_one();
   return {};
+}
+
+void Goals::end(const std::shared_ptr<Goal> & goal, std::function<void()> end)
+{
+  if (const Status started = start(goal, end, Work::end); !started) {
+    end();
+  }
 }
 
 void Goals::execute_tasks()
@@ -119,25 +125,30 @@ void Goals::supervise_goals(const std::stop_token & stop)
     lock.lock();
     auto endings = std::exchange(endings_, {});
     lock.unlock();
-    std::erase_if(endings, [this](Ending & ending) { return ending.goal->is_finished() || abandon_if_late(ending); });
+    std::vector<Ending> left;
+    for (Ending & ending : endings) {
+      if (!has_ended(ending)) {
+        left.push_back(std::move(ending));
+      }
+    }
     lock.lock();
-    endings_.insert(endings_.end(), endings.begin(), endings.end());
+    endings_.insert(endings_.end(), left.begin(), left.end());
     ending_.wait_for(lock, stop, interval, [] { return false; });
   }
 }
 
-bool Goals::abandon_if_late(Ending & ending)
+bool Goals::has_ended(Ending & ending)
 {
+  if (ending.goal->is_finished()) {
+    return true;
+  }
   if (!ending.deadline && ending.goal->is_stopped()) {
     ending.deadline = Clock::now() + return_timeout;
   }
   if (!ending.deadline || Clock::now() <= *ending.deadline) {
     return false;
   }
-  const auto abandon = [goal = ending.goal] { goal->abandon(); };
-  if (const Status started = start_stop(ending.goal, abandon); !started) {
-    abandon();  // the node ends
-  }
+  end(ending.goal, [goal = ending.goal] { goal->abandon(); });
   return true;
 }
 
@@ -167,7 +178,9 @@ std::vector<std::string> Goals::close(const Error & why, std::chrono::millisecon
   std::vector<std::string> names;
   for (const auto * tasks : {&waiting_, &running_}) {
     for (const Task & task : *tasks) {
-      names.push_back(task.goal->name());
+      if (task.kind != Work::end) {
+        names.push_back(task.goal->name());
+      }
     }
   }
   return names;

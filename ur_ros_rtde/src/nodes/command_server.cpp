@@ -80,11 +80,12 @@ void CommandServer::end_goals()
 
 std::vector<std::string> CommandServer::close()
 {
+  const auto deadline = std::chrono::steady_clock::now() + close_timeout;
   end_goals();  // nothing waits for the end of a session before the goals are told to end
   auto left = host_->goals().close(shutdown_error(), close_timeout);
   teleoperation_->close();
   if (stopping_.valid()) {
-    stopping_.wait_for(close_timeout);
+    stopping_.wait_until(deadline);
   }
   return left;
 }

@@ -64,6 +64,19 @@ class NeverLooks : public Command<SpeedJAction> {
   }
 };
 
+/// Turns joints with the resource of a mode, and hangs while they turn.
+class TurnsAndHangs : public Command<SpeedJAction> {
+  CommandTraits traits() const override { return {.resource = Resource::mode}; }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const std::vector<double> velocities(goal.joint_velocities.begin(), goal.joint_velocities.end());
+    run.control()->speedJ(velocities, goal.acceleration, 0.0);
+    std::this_thread::sleep_until(end_of(goal));
+    return Outcome::success();
+  }
+};
+
 /// A dashboard command that hangs for 4 s, less than the driver waits for it at its end.
 class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
   Outcome run(const Goal &, Run &) override
@@ -75,6 +88,7 @@ class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> 
 
 UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
+UR_ROS_RTDE_EXPORT(TurnsAndHangs, "turns_and_hangs")
 UR_ROS_RTDE_EXPORT(Hangs, "dashboard/hangs")
 
 }  // namespace ur_ros_rtde

@@ -1,6 +1,7 @@
 """Commands that do what they must not do do not keep the arm moving. The commands are those of test/plugins."""
 
 import pytest
+from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3, Wrench
 from plugin_prefix import environment_of_test_commands
 from robot_fixtures import make_ready
@@ -9,7 +10,7 @@ from support import HOME, Client, Simulator, start_node, wait_for
 from ur_ros_rtde_msgs.action import DashboardQuery, ForceMode, MoveJ, SpeedJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_as_output,force_mode_start,dashboard/hangs]"
+PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_and_hangs,turns_as_output,force_mode_start,dashboard/hangs]"
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
 
 
@@ -54,6 +55,17 @@ def test_ctrl_c_ends_a_mode_without_a_goal_while_a_dashboard_command_hangs(cell)
     driver.interrupt()
     assert time_to_rest(simulator, begin) < STOPPING_TIME
     assert driver.wait(15.0) == 0
+
+
+def test_a_cancel_stops_what_a_hanging_command_of_a_mode_has_started(cell):
+    simulator, _driver, client = cell
+    goal = client.send(SpeedJ, "turns_and_hangs", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0, time=4.0)
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
+    begin = simulator.state()["timestamp"]
+    goal.cancel()
+    assert time_to_rest(simulator, begin) < STOPPING_TIME
+    status, result = goal.wait_for_result()
+    assert status == GoalStatus.STATUS_CANCELED and "did not return" in result.message, result.message
 
 
 def test_a_command_without_a_resource_that_moves_the_arm_cannot_move_it(cell):

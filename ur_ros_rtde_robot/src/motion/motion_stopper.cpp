@@ -73,7 +73,7 @@ MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver &
       tracker_(tracker),
       activities_(activities),
       arbiter_(arbiter),
-      log_(std::move(log)),
+      logger_(std::move(log)),
       last_(completed(StopReport{})),
       thread_([this](const std::stop_token & stop) { serve(stop); })
 {
@@ -224,13 +224,18 @@ void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
     }
     lock.lock();
   } while (options_changed_);
-  if (!result) {
-    log_(LogLevel::warn, fmt::format("standstill is not confirmed: {}", result.error().message));
-  }
   last_ = operation_->stopping;
-  operation_->promise.set_value(std::move(result));
+  operation_->promise.set_value(result);
   operation_.reset();
   changed_.notify_all();
+  lock.unlock();
+  if (result) {
+    logger_.reset();
+  } else {
+    logger_.log_on_change(LogLevel::warn,
+                          fmt::format("standstill is not confirmed: {}", result.error().message));
+  }
+  lock.lock();
 }
 
 void MotionStopper::supervise()

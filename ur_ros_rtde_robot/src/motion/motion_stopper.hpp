@@ -18,7 +18,7 @@
 #include "motion/arbiter.hpp"
 #include "motion/motion_tracker.hpp"
 #include "motion/started_activities.hpp"
-#include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/connection/change_logger.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
 
@@ -124,7 +124,7 @@ class MotionStopper {
   const MotionTracker & tracker_;
   const StartedActivities & activities_;
   const Arbiter & arbiter_;
-  const LogFunction log_;
+  ChangeLogger logger_;  ///< stopper's thread only
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -38,10 +38,11 @@ Activities to_activities(std::uint32_t started)
 
 Activities StartedActivities::now() const
 {
-  Activities result;
+  // Before what calls record: one that has ended in between has recorded it.
+  Activities result = calls();
   const auto view = tracker_.view();
   if (const auto control = interfaces_.control_interface()) {
-    result = to_activities(control->getStartedMotions());
+    result = result | to_activities(control->getStartedMotions());
     // ur_rtde does not forget a move that has reached its target.
     const bool is_pending =
         view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
@@ -53,10 +54,15 @@ Activities StartedActivities::now() const
     result = result | Activity::extension;
   }
   const std::lock_guard lock(mutex_);
-  if (std::any_of(calls_.begin(), calls_.end(), [](const auto & permit) { return permit->revoked(); })) {
-    result = result | Activity::call;
-  }
   return fence_ ? result | Activity::script : result;
+}
+
+Activities StartedActivities::calls() const
+{
+  const std::lock_guard lock(mutex_);
+  const bool found =
+      std::any_of(calls_.begin(), calls_.end(), [](const auto & permit) { return permit->revoked(); });
+  return found ? Activities(Activity::call) : Activities();
 }
 
 std::shared_ptr<void> StartedActivities::begin_call(std::shared_ptr<const Permit> permit)

@@ -48,6 +48,9 @@ class StartedActivities {
   bool script_begun() const { return script_begun_; }
 
  private:
+  /// Activity::call, if there is one.
+  Activities calls() const;
+
   const RtdeInterfaces & interfaces_;
   const InputRegisters & registers_;
   const MotionTracker & tracker_;

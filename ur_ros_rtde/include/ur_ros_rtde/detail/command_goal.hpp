@@ -73,10 +73,10 @@ class CommandGoal : public Goal {
   Outcome settle(const Outcome & outcome);
   /// Lets the modes that the goal leaves on end with its client, if it asks for that.
   Outcome leave_modes(const Outcome & outcome);
-  /// Modes are active that were not before.
+  /// Modes are active that were not before, or a call that may start one.
   bool started_modes() const;
-  /// For a goal that shares the arm with others, or has none: something is active that it has started and may
-  /// not leave so.
+  /// For a goal that shares the arm with others: something is active that it may have started and may not
+  /// leave so.
   bool leaves_active(const Outcome & outcome) const;
 
   const std::shared_ptr<const CommandDescription> command_;
@@ -86,7 +86,8 @@ class CommandGoal : public Goal {
   std::string preempted_goal_;
   mutable std::mutex lease_mutex_;  ///< guards what follows
   Lease lease_;
-  Activities active_before_;  ///< modes that previous goals have left active
+  /// Modes that previous goals have left active. Empty: the command has not begun.
+  std::optional<Activities> active_before_;
 };
 
 }  // namespace ur_ros_rtde

@@ -43,6 +43,7 @@ class GoalServer {
   void start_queries(const std::shared_ptr<Goal> & goal, std::vector<GoalQuery> queries,
                      const rcl_cxx::SendGoalResponse & respond);
   void start(const std::shared_ptr<Handle> & handle);
+  Status start_work(const std::shared_ptr<Goal> & goal, std::function<void()> work);
   void stop(const rcl_cxx::GoalUUID & id, const Error & why) const;
   rcl_cxx::GoalResponse reject(const Goal & goal, const Error & why);
   std::shared_ptr<Goal> find(const rcl_cxx::GoalUUID & id) const;

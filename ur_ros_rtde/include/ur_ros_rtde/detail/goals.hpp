@@ -20,8 +20,9 @@ namespace ur_ros_rtde {
 /// of the time that a new thread needs to run on a busy host. All are joined by the destructor. Thread-safe.
 class Goals {
  public:
-  /// Largest number of goals that run at the same time. Stops have threads of their own beside these.
+  /// Largest number of goals that run at the same time.
   static constexpr std::size_t limit = 64;
+  /// The same for goals that stop the arm, beside the others.
   static constexpr std::size_t limit_of_stops = 16;
   /// From the standstill after Goal::stop() to the result, if the command does not return.
   static constexpr std::chrono::milliseconds return_timeout{500};
@@ -32,13 +33,17 @@ class Goals {
   Goals(const Goals &) = delete;
   Goals & operator=(const Goals &) = delete;
 
+  /// What a thread does for its goal: what the goal does, what a stop does, or only the end of a goal.
+  enum class Work { goal, stop, end };
+
   /// Success if start() can start another goal.
-  Status can_start() const;
-  /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close() and if `limit` goals are
-  /// running.
-  Status start(std::shared_ptr<Goal> goal, std::function<void()> work);
-  /// The same for a goal that stops the arm: succeeds even if `limit` other goals are running.
-  Status start_stop(std::shared_ptr<Goal> goal, std::function<void()> work);
+  Status can_start(Work kind = Work::goal) const;
+  /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close(), if the limit of that kind
+  /// is reached, and if there is no thread. The ends of goals have no limit.
+  Status start(std::shared_ptr<Goal> goal, std::function<void()> work, Work kind = Work::goal);
+  /// Ends `goal`, whose command does not run, with `end` in a thread of its own, because a plugin that writes
+  /// into the result may hang; without a thread, in this one.
+  void end(const std::shared_ptr<Goal> & goal, std::function<void()> end);
   /// Abandons `goal`, which was told to end, if it has no result `return_timeout` after the arm is at rest.
   void supervise(std::shared_ptr<Goal> goal);
   /// Tells all goals to end, and rejects new ones. Returns at once.
@@ -51,18 +56,18 @@ class Goals {
   struct Task {
     std::shared_ptr<Goal> goal;
     std::function<void()> work;
+    Work kind;
   };
   struct Ending {
     std::shared_ptr<Goal> goal;
     std::optional<Clock::time_point> deadline;  ///< once the arm is at rest
   };
 
-  Status can_start_locked(std::size_t most) const;
-  Status start_locked(std::shared_ptr<Goal> goal, std::function<void()> work);
+  Status can_start_locked(Work kind) const;
   void execute_tasks();
   void supervise_goals(const std::stop_token & stop);
-  /// In a thread of its own: what a plugin writes into the result may hang, as its command does.
-  bool abandon_if_late(Ending & ending);
+  /// Returns true if the goal has ended, or was abandoned.
+  bool has_ended(Ending & ending);
   std::vector<std::shared_ptr<Goal>> running_goals_locked() const;
 
   mutable std::mutex mutex_;

@@ -49,7 +49,7 @@ template <class T>
 class Locked {
  public:
   /// Evaluated with the lock held, so that no call begins after a stop has taken the lock. What it returns is
-  /// kept for as long as the call lasts.
+  /// kept for as long as the call lasts, which must end before the robot.
   using Permission = std::function<Expected<std::shared_ptr<void>>()>;
 
   class Call {

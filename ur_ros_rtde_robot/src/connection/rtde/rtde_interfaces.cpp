@@ -173,6 +173,10 @@ std::shared_ptr<RTDEControlInterface> RtdeInterfaces::connect_control(const std:
   auto control =
       std::make_shared<RTDEControlInterface>(options_.address, controllers_frequency, control_flags(options_),
                                              options_.urcap_port, keep_priority, script);
+  // Between the steps of these functions, no stop finds what they are about to start.
+  control->rejectScripts(
+      "not in this driver: a script or a path that is sent by ur_rtde cannot be stopped; use "
+      "Run::run_script() or the command move_path");
   // The state receiver closes the connection after silence_limit.
   control->setPackageTimeout(
       std::max(options_.silence_limit, std::chrono::milliseconds(RTDE_PACKAGE_TIMEOUT_MS)));
@@ -344,13 +348,13 @@ std::optional<Locked<RTDEControlInterface>> RtdeInterfaces::control_for_queries(
   if (!interface) {
     return std::nullopt;
   }
-  const auto refuse_motions = [interface]() -> std::shared_ptr<void> {
-    interface->refuseMotions(
+  const auto reject_motions = [interface]() -> std::shared_ptr<void> {
+    const char * const before = interface->rejectMotions(
         "a function that moves the arm or ends its program needs a lease of the arm: the traits() of the "
         "command have to name Resource::motion, Resource::mode or Resource::script");
-    return {nullptr, [interface](void *) { interface->refuseMotions(nullptr); }};
+    return {nullptr, [interface, before](void *) { interface->rejectMotions(before); }};
   };
-  return Locked(interface, control_lock_, "control interface").permitted_by(refuse_motions);
+  return Locked(interface, control_lock_, "control interface").permitted_by(reject_motions);
 }
 
 std::optional<Locked<RTDEIOInterface>> RtdeInterfaces::io() const

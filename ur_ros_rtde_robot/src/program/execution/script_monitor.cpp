@@ -148,6 +148,9 @@ bool ScriptMonitor::read_messages(milliseconds wait)
   const auto deadline = Clock::now() + message_wait;
   do {
     const auto message = primary_.next(wait);
+    if (!message && complete_if_told(ScriptEnd::interrupted)) {
+      return true;  // the controller may close a connection that was fenced
+    }
     if (!message) {
       return complete(ScriptEnd::link_lost, message.error().code,
                       "the outcome of the script is unknown: " + message.error().message);
