@@ -8,7 +8,7 @@ struct ForceModeTest : RobotFixture {
   bool enter(int type)
   {
     return control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, type,
-                                       {0.1, 0.1, 0.01, 0.1, 0.1, 0.1});
+                                {0.1, 0.1, 0.01, 0.1, 0.1, 0.1});
   }
   bool is_executed() const { return robot->control_for_queries()->waitUntilLastCommandExecuted(); }
 };

@@ -49,7 +49,8 @@ TEST_P(UpperRangeTest, SupportsMotionsAndStops)
   move_joints();
   EXPECT_TRUE(robot->stop_motion());
   EXPECT_EQ(robot->control_for_queries()->getTCPOffset().size(), 6U);
-  EXPECT_THROW(robot->control_for_queries()->getMassMatrix(), std::logic_error) << "the mass matrix needs both ranges";
+  EXPECT_THROW(robot->control_for_queries()->getMassMatrix(), std::logic_error)
+      << "the mass matrix needs both ranges";
 }
 
 TEST_P(UpperRangeTest, SupportsExtensionsWithParametersAndResults)

@@ -59,8 +59,8 @@ class Command : public CommandPlugin {
   virtual Outcome run(const Goal & goal, Run & run) = 0;
   /// How the arm is stopped if it moves when run() ends or has to end. Asked when the goal is accepted.
   virtual StopOptions stop_options(const Goal &) const { return {}; }
-  /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked when
-  /// the command is loaded, for goals that it never gets.
+  /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked
+  /// when the command is loaded, for goals that it never gets.
   virtual void fill_result(const Outcome & outcome, Result & result) const
   {
     write_standard_fields(outcome, result);

@@ -58,8 +58,8 @@ class DashboardCommand : public DashboardPlugin {
   /// By default executes request().
   virtual Outcome run(const Goal & goal, Run & run);
 
-  /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked when
-  /// the command is loaded, for goals that it never gets.
+  /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked
+  /// when the command is loaded, for goals that it never gets.
   virtual void fill_result(const Outcome & outcome, Result & result) const
   {
     write_standard_fields(outcome, result);

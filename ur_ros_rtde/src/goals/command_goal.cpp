@@ -303,7 +303,8 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   }
   StopOptions options = stop_options_;
   if (outcome) {
-    options.keep = active_before_.value_or(Activities()) | (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
+    options.keep = active_before_.value_or(Activities()) |
+                   (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
     if (!stop_request().reason() && robot().is_at_rest_except(options.keep)) {
       return outcome;
     }

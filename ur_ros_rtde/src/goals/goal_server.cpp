@@ -107,12 +107,11 @@ void GoalServer::start_queries(const std::shared_ptr<Goal> & goal, std::vector<G
     goal->release();
     return reject(*goal, why);
   };
-  const Status started =
-      start_work(goal, [goal, pending = std::move(queries), respond, reject_and_forget] {
-        const Outcome outcome =
-            guarded(goal->stop_request(), [&] { return answer(pending, goal->stop_request()); });
-        respond(outcome ? rcl_cxx::GoalResponse() : reject_and_forget(outcome.error()));
-      });
+  const Status started = start_work(goal, [goal, pending = std::move(queries), respond, reject_and_forget] {
+    const Outcome outcome =
+        guarded(goal->stop_request(), [&] { return answer(pending, goal->stop_request()); });
+    respond(outcome ? rcl_cxx::GoalResponse() : reject_and_forget(outcome.error()));
+  });
   if (!started) {
     respond(reject_and_forget(started.error()));
   }

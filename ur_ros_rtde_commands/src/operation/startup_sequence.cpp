@@ -47,7 +47,8 @@ std::string StartupSequence::step()
 {
   dashboard_ = DashboardSession(robot_.address());  // with the control mode, local or remote, of now
   // The newest package may be older than a change of the robot mode, so the dashboard server is queried, too.
-  if (robot_.ready_to_move() && query_dashboard(dashboard_, "robotmode") == "RUNNING" && robot_.ready_to_move()) {
+  if (robot_.ready_to_move() && query_dashboard(dashboard_, "robotmode") == "RUNNING" &&
+      robot_.ready_to_move()) {
     return {};
   }
   if (send_to_dashboard(dashboard_, "is in remote control") == "false") {

@@ -226,7 +226,8 @@ Status MotionStopper::stop_by_command(const StopOptions & options)
   }
   if (started.contains(Activity::torque)) {
     // The program ends, and with it everything that it does.
-    const Status ended = with_control(mode_end_timeout, [](Control & control) { return control.stopScript(); });
+    const Status ended =
+        with_control(mode_end_timeout, [](Control & control) { return control.stopScript(); });
     return ended ? stop_motions({}, options) : ended;
   }
   if (Status stopped = stop_motions(started, options); !stopped) {

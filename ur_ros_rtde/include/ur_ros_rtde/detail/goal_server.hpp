@@ -27,8 +27,8 @@ class GoalServer {
   };
   /// `request`: an A::Goal of the action, which outlives the goal.
   using MakeGoal = std::function<std::shared_ptr<Goal>(const rcl_cxx::GoalUUID & id, const void * request)>;
-  /// Writes the A::Result of a goal without a result that can be sent. Called by the thread that serves stops:
-  /// must not call a plugin.
+  /// Writes the A::Result of a goal without a result that can be sent. Called by the thread that serves
+  /// stops: must not call a plugin.
   using WriteMissingResult = std::function<void(rcl_cxx::GoalStatus status, void * result)>;
 
   GoalServer(PluginHost & host, const Description & description, MakeGoal make_goal,

@@ -38,8 +38,8 @@ class Goals {
 
   /// Success if start() can start another goal.
   Status can_start(Work kind = Work::goal) const;
-  /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close(), if the limit of that kind
-  /// is reached, and if there is no thread. The ends of goals have no limit.
+  /// Runs `work`, which must not throw, in a thread for `goal`. Fails after close(), if the limit of that
+  /// kind is reached, and if there is no thread. The ends of goals have no limit.
   Status start(std::shared_ptr<Goal> goal, std::function<void()> work, Work kind = Work::goal);
   /// Ends `goal`, whose command does not run, with `end` in a thread of its own, because a plugin that writes
   /// into the result may hang; without a thread, in this one.

@@ -41,10 +41,10 @@ HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseco
 
 /// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
 /// holds the interface's lock for one call (execute-around pointer): `robot.control(lease)->moveL(pose,
-/// speed, acceleration, true);` A call throws RobotError (busy) if the call of another thread is still running
-/// after `timeout`, and with the reason if the caller may no longer command the robot. The interface stays
-/// alive while a Locked refers to it, but may lose its connection: get a Locked from the robot for each use
-/// instead of storing it.
+/// speed, acceleration, true);` A call throws RobotError (busy) if the call of another thread is still
+/// running after `timeout`, and with the reason if the caller may no longer command the robot. The interface
+/// stays alive while a Locked refers to it, but may lose its connection: get a Locked from the robot for each
+/// use instead of storing it.
 template <class T>
 class Locked {
  public:
