@@ -11,12 +11,14 @@ setpoints that is late slows down: its decelerations are excused beside STALL_OF
 import math
 from typing import List, Optional
 
+from support import TIMEOUT_FACTOR
+
 from . import motion
 from .cases import SILENCE_LIMIT
 from .goal_kinds import DEFAULT_DECELERATION, JOINT, LINEAR, MODE, PATH
 from .motion import CYCLE
 
-RESULT_LIMIT = 1.0  # s of the host, after the standstill
+RESULT_LIMIT = 1.0 * TIMEOUT_FACTOR  # s of the host, after the standstill
 HELD_REST_LIMIT = 1.2  # s of the robot, after the end of a hold: the driver may have lost the connection, or the watchdog has to act
 MODE_REST_LIMIT = 0.8  # s, more for what the driver does not decelerate along a path: the end of a mode, a braking arm
 TOLERANCE = 0.12  # of a deceleration
