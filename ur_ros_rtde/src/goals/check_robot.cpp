@@ -46,8 +46,8 @@ Check & Check::answers_queries()
   if (const Status possible = robot_->motion_possible(); !possible) {
     return that(false, possible.error().message, possible.error().code);
   }
-  [[maybe_unused]] const auto control =
-      robot_->control_for_queries();  // throws the reason if it is not available
+  // Throws the reason if it is not available.
+  [[maybe_unused]] const auto control = robot_->control_for_queries();
   const auto holder = robot_->holder(Resource::motion);
   return that(!holder || !holder->blocks_queries,
               fmt::format("{} occupies every cycle of the control program: try again when it has ended",

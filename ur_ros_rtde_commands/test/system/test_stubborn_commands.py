@@ -34,15 +34,19 @@ def time_to_rest(simulator, begin):
     return simulator.state()["timestamp"] - begin
 
 
+def ends_with_the_arm_at_rest(simulator, driver):
+    begin = simulator.state()["timestamp"]
+    driver.interrupt()
+    assert time_to_rest(simulator, begin) < STOPPING_TIME
+    assert driver.wait(15.0) == 0
+
+
 def test_ctrl_c_stops_the_arm_while_a_dashboard_command_hangs(cell):
     simulator, driver, client = cell
     assert client.send(DashboardQuery, "dashboard/hangs").accepted
     assert client.send(MoveJ, "move_j", joint_positions=[3.0, *HOME[1:]], speed=0.5, acceleration=2.0).accepted
     wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
-    begin = simulator.state()["timestamp"]
-    driver.interrupt()
-    assert time_to_rest(simulator, begin) < STOPPING_TIME
-    assert driver.wait(15.0) == 0
+    ends_with_the_arm_at_rest(simulator, driver)
 
 
 def test_ctrl_c_ends_a_mode_without_a_goal_while_a_dashboard_command_hangs(cell):
@@ -51,10 +55,7 @@ def test_ctrl_c_ends_a_mode_without_a_goal_while_a_dashboard_command_hangs(cell)
                 wrench=Wrench(force=Vector3(z=-5.0)), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
     wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
     assert client.send(DashboardQuery, "dashboard/hangs").accepted
-    begin = simulator.state()["timestamp"]
-    driver.interrupt()
-    assert time_to_rest(simulator, begin) < STOPPING_TIME
-    assert driver.wait(15.0) == 0
+    ends_with_the_arm_at_rest(simulator, driver)
 
 
 def test_a_cancel_stops_what_a_hanging_command_of_a_mode_has_started(cell):

@@ -203,7 +203,7 @@ Status MotionStopper::with_control(double answer_timeout, const std::function<bo
   }
 }
 
-/// Afterwards, it is known what the call has started, and it starts nothing any more.
+/// Afterwards, it is known what the call has started, and it starts nothing else.
 Status MotionStopper::end_call_of_revoked_holder()
 {
   return activities_.now().contains(Activity::call) ? with_control(0.0, [](Control &) { return true; })
