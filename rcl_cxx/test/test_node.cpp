@@ -292,10 +292,14 @@ int run(int argc, char ** argv)
   rcl_cxx::ActionServerOptions short_lived;
   short_lived.result_timeout = milliseconds(300);
   Counting forgetful(*node, "forgetful", short_lived);
+  rcl_cxx::ActionServerOptions on_demand;
+  on_demand.creation_callback_group = node->create_callback_group();
+  Counting unused(*node, "on_demand", on_demand);
   Caller caller(*node);
 
   rcl_cxx::Executor executor(context);
   executor.add_node(node);
+  executor.add_callback_group(*on_demand.creation_callback_group);
   std::cout << "ready" << std::endl;
   executor.spin();
   std::cout << "stopped by " << context->shutdown_reason() << std::endl;

@@ -19,6 +19,7 @@ from . import (
     bench_results,
     bench_rows,
     bench_scale,
+    bench_servers,
     bench_session,
     bench_simulator,
     bench_stress,
@@ -37,9 +38,10 @@ from .layout import PROGRAM, Layout
 KILLED_CLIENTS, NEW_CLIENTS = 20, 100
 # Options that change what is measured, or how.
 SETTINGS = ("model", "repeat", "stream", "real_time_factor", "seconds", "let_sleep", "realtime_priority", "scale", "goals", "robots",
-            "stress", "simulator", "count", "hours", "recovery", "viewer")
+            "stress", "simulator", "count", "hours", "recovery", "viewer", "servers")
 # What is measured instead of the default rows.
-SEPARATE = {"scale": bench_scale, "stress": bench_stress, "simulator": bench_simulator, "recovery": bench_recovery, "viewer": bench_viewer}
+SEPARATE = {"scale": bench_scale, "stress": bench_stress, "simulator": bench_simulator, "recovery": bench_recovery, "viewer": bench_viewer,
+            "servers": bench_servers}
 MODES = ("stream", "trajectory", "trace", *SEPARATE)
 
 
@@ -82,7 +84,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     _add_result_options(parser)
     for add_options in (_add_stream_options, bench_scale.add_options, bench_stress.add_options, bench_trace.add_options,
                         bench_trajectory.add_options, bench_simulator.add_options, bench_recovery.add_options,
-                        bench_viewer.add_options):
+                        bench_viewer.add_options, bench_servers.add_options):
         add_options(parser)
     options = parser.parse_args(arguments)
     _check_combination(parser, options)

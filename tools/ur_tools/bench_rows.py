@@ -32,6 +32,15 @@ ROBOTS = (1, 4, 8)
 HOSTING = {"driver": ("driver",), "three processes": ("robot_state_receiver", "command_server", "dashboard_server")}
 
 
+# Values of the parameter `servers`, in --servers.
+SERVERS = ("on_demand", "always")
+
+
+def servers_name(servers: str, part: str) -> str:
+    """`part`: what is measured, or nothing for the driver before its first client."""
+    return f"servers:={servers}{part and ', '}{part}"
+
+
 def scale_name(robots: int, hosting: str) -> str:
     return f"{robots} robot{'s' * (robots > 1)}, {hosting}"
 
@@ -66,6 +75,17 @@ STRESS: Tuple[Tuple[str, float, str], ...] = (
     ("p99", 1.0, "ms from a package to a C++ subscriber"),
     ("p99.9", 2.0, "ms from a package to a C++ subscriber"),
     ("missing", 0.1, "% of the packages did not reach the subscriber"),
+)
+# What --servers measures: name, part, unit.
+SERVER_PARTS: Tuple[Tuple[str, str, str], ...] = (
+    ("", "start", "s until the driver is ready"),
+    ("", "memory", "MB of the driver without a client"),
+    ("", "own memory", "MB of the driver without a client, shared pages divided among the processes"),
+    ("", "endpoints", "in the domain, without a client"),
+    ("", "other node", "MB more in another node of the domain than without a driver"),
+    *((part, p, f"s until a new client {what}, after clients were killed")
+      for part, what in (("accepted", "has its first goal accepted"), ("found", "has also found all actions")) for p in ("p50", "p90", "max")),
+    *((part, memory, "MB of the driver") for part in ("after ten", "after all") for memory in ("memory", "own memory")),
 )
 # Interruptions of --recovery, and the targets.
 RECOVERY = {"links closed": 10.0, "controller restarted": 30.0, "node restarted": 500.0}
@@ -105,6 +125,7 @@ ROWS: Tuple[Row, ...] = (
     Row("start to ready", None, 2.0, "s"),
     Row("new client finds all actions", "p50", 0.5, "s, after clients were killed"),
     Row("new client finds all actions", "max", 1.0, "s, after clients were killed"),
+    *(Row(servers_name(servers, name), part, None, unit) for servers in SERVERS for name, part, unit in SERVER_PARTS),
     *(Row(scale_name(robots, hosting), *part) for hosting in HOSTING for robots in ROBOTS for part in SCALE),
     Row("many goals", "growth", 1.0, "MB of the driver's memory over the second half of the goals"),
     Row("many goals", "duration", None, "ms per goal, from sending it to its result"),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <rosidl_typesupport_cpp/message_type_support.hpp>
 #include <rosidl_typesupport_cpp/service_type_support.hpp>
 #include <ur_ros_rtde_msgs/action/set_payload.hpp>
 
@@ -105,8 +106,29 @@ SendGoal::Request make_request(int number)
   return request;
 }
 
+/// The subscription by which the driver knows a client of an action.
+class Feedback {
+ public:
+  explicit Feedback(bench::BareNode & node) : node_(node.node)
+  {
+    const auto * const type =
+        rosidl_typesupport_cpp::get_message_type_support_handle<SetPayload::Impl::FeedbackMessage>();
+    const rcl_subscription_options_t options = rcl_subscription_get_default_options();
+    check(rcl_subscription_init(&subscription_, &node_, type, "set_payload/_action/feedback", &options));
+    rcl_reset_error();  // as in Client
+  }
+  ~Feedback() { check(rcl_subscription_fini(&subscription_, &node_)); }
+  Feedback(const Feedback &) = delete;
+  Feedback & operator=(const Feedback &) = delete;
+
+ private:
+  rcl_node_t & node_;
+  rcl_subscription_t subscription_ = rcl_get_zero_initialized_subscription();
+};
+
 void send_goals(bench::BareNode & node, int count)
 {
+  const Feedback feedback(node);
   Client<SendGoal> goals(node, "set_payload/_action/send_goal");
   Client<GetResult> results(node, "set_payload/_action/get_result");
   goals.wait_for_service();

@@ -126,6 +126,8 @@ PARAMETERS = (
     Argument("on_busy", "reject", "What happens to a motion goal while another motion runs. reject: it is rejected. preempt: it "
              "stops the running motion.", ("reject", "preempt")),
     Argument("on_client_lost", "stop", "What happens to a motion whose client has disappeared.", ("stop", "continue")),
+    Argument("servers", "on_demand", "When the endpoints of an action are created: for its first client, or at the start.",
+             ("on_demand", "always")),
     Argument("stream_timeout", 0.1, "Time in s without a message after which teleoperation by a topic ends.", limits=(0.02, 1.0)),
     Argument("stream_max_joint_jump", 0.2, "Largest distance in rad of a teleoperation target from the current setpoint.",
              limits=(0.001, 1.0)),

@@ -229,6 +229,17 @@ Status Robot::Impl::may_use(const Claim & claim) const
   return {};
 }
 
+/// For a moment. False after `deadline`, and when the state of the robot keeps the program from running.
+bool Robot::Impl::wait_for_control_program(Permit::Clock::time_point deadline) const
+{
+  auto sample = state.latest();
+  if (!sample || !state.link().connected || motion_blocker(*sample) || Permit::Clock::now() > deadline) {
+    return false;
+  }
+  state.wait_for_next(*sample, std::chrono::milliseconds(20));
+  return true;
+}
+
 Expected<Generation> Robot::Impl::admit(const Claim & claim) const
 {
   const Generation now = generation();  // before the checks: a change afterwards ends the lease

@@ -41,6 +41,7 @@ class Robot::Impl {
   Status may_use(const Claim & claim) const;
   /// For a claim that is granted now.
   Expected<Generation> admit(const Claim & claim) const;
+  bool wait_for_control_program(Permit::Clock::time_point deadline) const;
 
   const RobotOptions options;
   Arbiter arbiter;

@@ -18,19 +18,25 @@ Expected<Lease> Robot::acquire(Claim claim)
   return impl_->arbiter.acquire(std::move(claim), [&] { return impl_->admit(asked); });
 }
 
-Expected<Lease> Robot::acquire_preempting(Claim claim, std::chrono::milliseconds timeout,
+Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
                                           const std::stop_token & stop)
 {
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  const auto left = [&] {
-    return std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+  const auto deadline = Permit::Clock::now() + timeout;
+  const auto held = holder(claim.resource);
+  const bool after_script = held && held->resource == Resource::script;
+  bool was_stopping = false;
+  const auto admit = [&] {
+    was_stopping = impl_->stopper.is_stopping();
+    return impl_->admit(claim);
   };
-  while (true) {
-    auto lease = impl_->arbiter.acquire_preempting(claim, [&] { return impl_->admit(claim); }, left(), stop);
-    if (lease || !impl_->stopper.wait_until_idle(deadline, stop) || left().count() <= 0) {
-      return lease;
+  // Whatever else keeps the arm from being moved has not been asked for by this claim: it fails.
+  const auto retry = [&] {
+    if (was_stopping) {
+      return impl_->stopper.wait_until_idle(deadline, stop);
     }
-  }
+    return after_script && impl_->wait_for_control_program(deadline);
+  };
+  return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, stop);
 }
 
 Status Robot::may_use(const Claim & claim) const

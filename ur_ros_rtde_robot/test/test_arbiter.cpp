@@ -19,6 +19,13 @@ Expected<Generation> admit()
   return Generation{};
 }
 
+Expected<Lease> preempting(Arbiter & arbiter, const Claim & claim, std::chrono::milliseconds timeout,
+                           const std::stop_token & stop = {})
+{
+  return arbiter.acquire_preempting(
+      claim, admit, [] { return false; }, Permit::Clock::now() + timeout, stop);
+}
+
 TEST(ArbiterTest, GrantsAResourceToOneHolderAndNamesIt)
 {
   Arbiter arbiter;
@@ -77,7 +84,7 @@ TEST(ArbiterTest, PreemptsTheHolderAndWaits)
     leaving = std::jthread([&] { held.reset(); });
   };
   held = std::move(*arbiter.acquire(std::move(first), admit));
-  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j", "77"), admit, 5s, {});
+  const auto second = preempting(arbiter, claim(Resource::motion, "move_j", "77"), 5s);
   EXPECT_TRUE(second);
   EXPECT_EQ(reason, "preempted by move_j, goal 77");
 }
@@ -89,7 +96,7 @@ TEST(ArbiterTest, RejectsWhenTheHolderDoesNotReleaseInTime)
   auto first = claim(Resource::motion);
   first.preempt = [&](const Error &) { ++asked; };
   const auto held = arbiter.acquire(std::move(first), admit);
-  const auto second = arbiter.acquire_preempting(claim(Resource::motion, "move_j"), admit, 20ms, {});
+  const auto second = preempting(arbiter, claim(Resource::motion, "move_j"), 20ms);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::busy);
   EXPECT_EQ(asked, 1);
@@ -99,7 +106,63 @@ TEST(ArbiterTest, DoesNotPreemptAHolderWithoutCallback)
 {
   Arbiter arbiter;
   const auto held = arbiter.acquire(claim(Resource::motion), admit);
-  EXPECT_FALSE(arbiter.acquire_preempting(claim(Resource::motion, "move_j"), admit, 10s, {}));
+  EXPECT_FALSE(preempting(arbiter, claim(Resource::motion, "move_j"), 10s));
+}
+
+TEST(ArbiterTest, PreemptsOnlyItsOwnHolderIfAskedTo)
+{
+  Arbiter arbiter;
+  int asked = 0;
+  auto first = claim(Resource::motion, "move_j");
+  first.preempt = [&](const Error &) { ++asked; };
+  const auto held = arbiter.acquire(std::move(first), admit);
+  auto other = claim(Resource::motion, "follow_joint_trajectory");
+  other.preempts_only_own = true;
+  const auto rejected = preempting(arbiter, other, 10s);
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().code, ErrorCode::busy);
+  EXPECT_EQ(asked, 0);
+  auto own = claim(Resource::motion, "move_j", "77");
+  own.preempts_only_own = true;
+  EXPECT_FALSE(preempting(arbiter, own, 1ms)) << "the holder stays";
+  EXPECT_EQ(asked, 1);
+}
+
+TEST(ArbiterTest, RetriesWhileTheCauseOfTheRejectionEnds)
+{
+  Arbiter arbiter;
+  int rejected = 0;
+  const auto admitted_the_third_time = [&]() -> Expected<Generation> {
+    return ++rejected < 3 ? failure(ErrorCode::busy, "stopping") : Expected<Generation>(Generation{});
+  };
+  EXPECT_TRUE(arbiter.acquire_preempting(
+      claim(Resource::motion), admitted_the_third_time, [] { return true; }, Permit::Clock::now() + 10s, {}));
+  EXPECT_EQ(rejected, 3);
+  rejected = 0;
+  EXPECT_FALSE(arbiter.acquire_preempting(
+      claim(Resource::motion), admitted_the_third_time, [] { return false; }, Permit::Clock::now() + 10s, {}));
+  EXPECT_EQ(rejected, 1);
+}
+
+/// Between two attempts, a claim still is one that waits: a newer one preempts it.
+TEST(ArbiterTest, TheNewestClaimWinsOverOneThatRetries)
+{
+  Arbiter arbiter;
+  std::stop_source older_stops;
+  auto older = claim(Resource::motion, "move_j", "1");
+  older.preempt = [&](const Error &) { older_stops.request_stop(); };
+  const auto is_never_admitted = []() -> Expected<Generation> {
+    return failure(ErrorCode::busy, "stopping");
+  };
+  std::optional<Lease> newer;
+  const auto preempt_it = [&] {
+    newer = std::move(*preempting(arbiter, claim(Resource::motion, "stop", "2"), 10s));
+    return true;
+  };
+  EXPECT_FALSE(arbiter.acquire_preempting(older, is_never_admitted, preempt_it, Permit::Clock::now() + 10s,
+                                          older_stops.get_token()));
+  EXPECT_TRUE(older_stops.stop_requested());
+  EXPECT_TRUE(*newer);
 }
 
 TEST(ArbiterTest, GrantsAModeDuringAMotionButNotDuringAScript)
@@ -139,13 +202,13 @@ TEST(ArbiterTest, TheNewestOfTwoPreemptingClaimsWins)
   older.preempt = [&](const Error &) { older_stops.request_stop(); };
   std::optional<bool> older_granted;
   std::jthread waiting([&] {
-    older_granted = arbiter.acquire_preempting(older, admit, 20s, older_stops.get_token()).has_value();
+    older_granted = preempting(arbiter, older, 20s, older_stops.get_token()).has_value();
   });
   while (!asked) {
     std::this_thread::yield();
   }
   std::jthread newer(
-      [&] { EXPECT_TRUE(arbiter.acquire_preempting(claim(Resource::motion, "stop", "2"), admit, 20s, {})); });
+      [&] { EXPECT_TRUE(preempting(arbiter, claim(Resource::motion, "stop", "2"), 20s)); });
   waiting.join();
   EXPECT_FALSE(*older_granted);
   held.reset();

@@ -1,6 +1,7 @@
 // Who may move the arm, and what takes it out of the hands of its holder. Times are those of the simulated
 // robot, which is slow, so that delays of a busy host are short in its time.
 #include <atomic>
+#include <future>
 #include <thread>
 
 #include "robot_fixture.hpp"
@@ -400,6 +401,27 @@ TEST_F(LeaseTest, AStopTakesTheArmFromAHolderThatBrakesByItself)
   start_recording();
   ASSERT_TRUE(robot->stop_motion());
   EXPECT_LE(time_to_deceleration(), stop_begins_within);
+}
+
+TEST_F(LeaseTest, IsNotGrantedToAClaimThatWaitedWhenTheSafeguardStopIsOver)
+{
+  std::optional<Lease> held;
+  Claim holder = claim();
+  std::atomic<bool> asked{false};
+  holder.preempt = [&](const Error &) { asked = true; };
+  held = std::move(*robot->acquire(holder));
+  move(*held);
+  std::future<Expected<Lease>> next =
+      std::async(std::launch::async, [&] { return robot->acquire_preempting(claim(), 60s); });
+  ASSERT_TRUE(eventually([&] { return asked.load(); }));
+  controller.control({{"command", "safeguard"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::safeguard_stop));
+  held.reset();
+  ASSERT_EQ(next.wait_for(10s), std::future_status::ready) << "it waits for the end of the safeguard stop";
+  const auto rejected = next.get();
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().code, ErrorCode::safeguard_stop);
+  controller.control({{"command", "safeguard"}, {"open", false}});
 }
 
 TEST_F(LeaseTest, IsGrantedAfterTheStopOfThePreviousHolder)

@@ -183,6 +183,22 @@ TEST(AsyncStatusTest, DecodesTheControlScriptsWord)
   EXPECT_EQ(status.progress(), 2U);
 }
 
+/// The two statuses come over different connections, one of which may be ahead.
+TEST(AsyncStatusTest, TellsWhetherAnOperationHasBegunSince)
+{
+  const auto status = [](unsigned operation, bool running) {
+    return AsyncStatus{operation << 24U | (running ? 1U << 15U : 0U)};
+  };
+  const AsyncStatus before = status(3, true);
+  EXPECT_FALSE(status(3, true).has_begun_since(before));
+  EXPECT_FALSE(status(3, false).has_begun_since(before)) << "the previous operation has ended";
+  EXPECT_FALSE(status(2, false).has_begun_since(before)) << "an older status";
+  EXPECT_TRUE(status(4, true).has_begun_since(before));
+  EXPECT_TRUE(status(5, false).has_begun_since(before));
+  EXPECT_TRUE(status(0, true).has_begun_since(status(127, false))) << "the number starts again";
+  EXPECT_FALSE(status(127, false).has_begun_since(status(0, true)));
+}
+
 Sample running_robot()
 {
   Sample sample{};

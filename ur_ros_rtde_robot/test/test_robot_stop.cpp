@@ -140,6 +140,66 @@ TEST_F(StopTest, StopsTheProgramDuringABlockingMotion)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(StopTest, GoesOnToTheNextMeansWhileItIsRequestedAgainAndAgain)
+{
+  make_both();
+  auto q = robot->receive()->getActualQ();
+  q[0] += 3.0;
+  std::jthread blocked([&, control = control()] { control->moveJ(q, 0.5, 1.0); });
+  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
+  std::jthread insisting([&](const std::stop_token & stop) {
+    while (!stop.stop_requested()) {
+      robot->begin_stop({}, Error{ErrorCode::preempted, "stopped"});
+      std::this_thread::sleep_for(2ms);
+    }
+  });
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_LT(std::abs(robot->latest()->actual_q[0] - q[0]), 3.0);
+  EXPECT_GT(std::abs(robot->latest()->actual_q[0] - q[0]), 1.5) << "the motion went on";
+}
+
+/// The robot has paused it, and resumes it when the safeguard closes.
+TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
+{
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 0.0;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
+  move_joints();
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  controller.control({{"command", "safeguard"}});
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  const auto report = robot->stop_motion();
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("stop it on the pendant"), std::string::npos) << report.error().message;
+}
+
+TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)
+{
+  make_both();
+  const std::string dwelling =
+      "def dwell():\n"
+      "  q = get_actual_joint_positions()\n"
+      "  q[0] = q[0] + 0.2\n"
+      "  movej(q, a=10, v=2)\n"
+      "  sleep(0.3)\n"
+      "  q[0] = q[0] + 1\n"
+      "  movej(q, a=2, v=0.8)\n"
+      "end\n";
+  const double start = robot->latest()->actual_q[0];
+  std::jthread script([&] { run_script(dwelling); });
+  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_q[0] > start + 0.19 && at_rest(); }));
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::watchdog);
+  EXPECT_FALSE(robot->latest()->is_program_running());
+  const double end = robot->latest()->controller_time + 0.5;
+  EXPECT_TRUE(eventually([&] { return robot->latest()->controller_time > end; }));
+  EXPECT_NEAR(robot->latest()->actual_q[0], start + 0.2, 0.02) << "the script went on";
+}
+
 TEST_F(StopTest, MayBeRequestedBySeveralThreads)
 {
   make_both();

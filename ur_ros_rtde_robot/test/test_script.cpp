@@ -289,6 +289,31 @@ TEST_F(ScriptTest, IsEndedInASafeguardStopSoThatItCannotResume)
   EXPECT_TRUE(is_back());
 }
 
+/// In local control, the dashboard server does not stop it.
+TEST_F(ScriptTest, IsLeftToItsWatchdogIfItCannotBeEndedInASafeguardStop)
+{
+  make_both();
+  ScriptOptions options;
+  std::atomic<bool> told{false};
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (turns() && !told.exchange(true)) {
+      controller.control({{"command", "remote_control"}, {"on", false}});
+      controller.control({{"command", "safeguard"}});
+    }
+    return std::nullopt;
+  };
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
+  const double before = robot->latest()->actual_q[0];
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+  EXPECT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_NEAR(robot->latest()->actual_q[0], before, 0.1) << "the script went on";
+  controller.control({{"command", "remote_control"}});
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptTest, EndsWithTheLink)
 {
   make_both();

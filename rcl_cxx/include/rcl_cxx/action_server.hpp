@@ -13,6 +13,7 @@
 
 namespace rcl_cxx {
 namespace detail {
+class ActionAnnouncement;
 class ActionServerImpl;
 class NodeImpl;
 }  // namespace detail
@@ -26,6 +27,11 @@ struct ActionServerOptions {
   /// For requests to cancel a goal, requests for results, and lost clients. Empty: the default group of the
   /// node. Their callbacks may run at the same time as those of goal requests.
   CallbackGroup::SharedPtr cancel_callback_group{};
+  /// If set, the server is created on demand, in the executor of this group: until the first action client
+  /// appears, only the publisher of feedback exists, by which ROS lists actions. Clients wait for the server
+  /// as for any other; a program that uses the services of the action without an action client finds none.
+  /// Empty, and on Humble, which reports no new subscriptions: the server is created at once.
+  CallbackGroup::SharedPtr creation_callback_group{};
 };
 
 /// The callbacks of an action server. They run in the thread of the executor of their group and must return
@@ -73,6 +79,7 @@ class ActionServer {
 
  private:
   std::shared_ptr<detail::ActionServerImpl> impl_;
+  std::shared_ptr<detail::ActionAnnouncement> announcement_;  ///< creates it on demand, instead of impl_
 };
 
 }  // namespace rcl_cxx

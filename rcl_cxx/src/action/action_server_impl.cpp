@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "action/action_announcement.hpp"
 #include "action/action_messages.hpp"
 #include "events/event_queue.hpp"
 #include "executor/timer_impl.hpp"
@@ -43,9 +44,6 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
                                                   : this->node()->default_group()),
       sender_(std::make_shared<ResponseSender>(this->node(), cancel_group_))
 {
-  if (!callbacks_.handle_accepted) {
-    throw Error(fmt::format("{}: the callback handle_accepted is missing", label()));
-  }
   rcl_action_server_options_t rcl_options = rcl_action_server_get_default_options();
   if (options.result_timeout) {
     const std::int64_t ns = options.result_timeout->count();
@@ -381,14 +379,26 @@ void ActionServerImpl::schedule_expiry_locked()
 ActionServer::ActionServer(std::shared_ptr<detail::NodeImpl> node, const ActionType & type,
                            const std::string & action, ActionServerCallbacks callbacks,
                            const ActionServerOptions & options)
-    : impl_(detail::make_waitable<detail::ActionServerImpl>(std::move(node), type, action,
-                                                            std::move(callbacks), options))
 {
+  if (!callbacks.handle_accepted) {
+    throw Error(fmt::format("action server {}: the callback handle_accepted is missing", action));
+  }
+  if (options.creation_callback_group && detail::compat::reports_subscriptions) {
+    announcement_ = detail::make_waitable<detail::ActionAnnouncement>(std::move(node), type, action,
+                                                                      std::move(callbacks), options);
+  } else {
+    impl_ = detail::make_waitable<detail::ActionServerImpl>(std::move(node), type, action,
+                                                            std::move(callbacks), options);
+  }
 }
 
 ActionServer::~ActionServer()
 {
-  impl_->retire();
+  if (announcement_) {
+    announcement_->retire();
+  } else {
+    impl_->retire();
+  }
 }
 
 }  // namespace rcl_cxx

@@ -2,6 +2,7 @@
 
 /// The differences between versions of rcl (Humble 5.3, Jazzy 9.2, Kilted 10.1, Rolling).
 
+#include <rcl/event.h>
 #include <rcl/graph.h>
 #include <rcl/logging_rosout.h>
 #include <rcl/node.h>
@@ -51,6 +52,18 @@ inline rcl_ret_t action_server_init(rcl_action_server_t * server, rcl_node_t * n
 #else
   static_cast<void>(expire_timer);
   return rcl_action_server_init(server, node, clock, type_support, name, options);
+#endif
+}
+
+/// Humble does not report a new subscription to a publisher.
+inline constexpr bool reports_subscriptions = RCL_VERSION_MAJOR >= 6;
+/// The event that a subscription to the topic of `publisher` has appeared or gone.
+inline rcl_ret_t matched_event_init(rcl_event_t * event, const rcl_publisher_t * publisher)
+{
+#if RCL_VERSION_MAJOR >= 6
+  return rcl_publisher_event_init(event, publisher, RCL_PUBLISHER_MATCHED);
+#else
+  return rcl_publisher_is_valid(publisher) && event != nullptr ? RCL_RET_UNSUPPORTED : RCL_RET_INVALID_ARGUMENT;
 #endif
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 #include <utility>
+#include <vector>
 
 #include "ur_ros_rtde/detail/goals.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
@@ -27,13 +28,19 @@ class Robot;
 /// What a server provides to its plugins.
 class PluginHost {
  public:
-  explicit PluginHost(rcl_cxx::Node & node);
+  /// `servers_on_demand`: an action server is created for its first client.
+  explicit PluginHost(rcl_cxx::Node & node, bool servers_on_demand = false);
 
   rcl_cxx::Node & node() { return node_; }
   Goals & goals() { return goals_; }
   /// The callbacks of stops, of cancel requests and of lost clients. Served by a thread of its own, which
   /// runs no other code of plugins than the check of a stop.
   const rcl_cxx::CallbackGroup::SharedPtr & stop_group() const { return stop_group_; }
+  /// Creates action servers on demand, in a thread of its own: a new client must not delay the callbacks of
+  /// this node. Empty: they are created at once.
+  const rcl_cxx::CallbackGroup::SharedPtr & creation_group() const { return creation_group_; }
+  /// The groups that need a thread of their own.
+  std::vector<const rcl_cxx::CallbackGroup *> groups() const;
   /// Publishes on goal_rejections why a goal was rejected.
   void publish_rejection(const std::string & action, const rcl_cxx::GoalUUID & id, const Error & why);
 
@@ -41,6 +48,7 @@ class PluginHost {
   rcl_cxx::Node & node_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRejected>::SharedPtr rejections_;
   const rcl_cxx::CallbackGroup::SharedPtr stop_group_;
+  const rcl_cxx::CallbackGroup::SharedPtr creation_group_;
   Goals goals_;
 };
 
@@ -49,10 +57,11 @@ class CommandHost : public PluginHost {
   struct Options {
     bool preempt_when_busy = false;
     bool stop_when_client_lost = true;
+    bool servers_on_demand = false;
   };
 
   CommandHost(rcl_cxx::Node & node, Robot & robot, const Options & options)
-      : PluginHost(node), robot_(robot), options_(options)
+      : PluginHost(node, options.servers_on_demand), robot_(robot), options_(options)
   {
   }
 
@@ -93,8 +102,9 @@ class DashboardHost : public PluginHost {
   /// not started in its place while the returned object exists.
   using EndScript = std::function<std::shared_ptr<void>(const Error & why)>;
 
-  DashboardHost(rcl_cxx::Node & node, DashboardConnection & connection, EndScript end_script)
-      : PluginHost(node), connection_(connection), end_script_(std::move(end_script))
+  DashboardHost(rcl_cxx::Node & node, bool servers_on_demand, DashboardConnection & connection,
+                EndScript end_script)
+      : PluginHost(node, servers_on_demand), connection_(connection), end_script_(std::move(end_script))
   {
   }
   DashboardConnection & connection() { return connection_; }

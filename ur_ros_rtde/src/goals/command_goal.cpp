@@ -50,6 +50,7 @@ Claim CommandGoal::claim()
   result.id = id().short_string();
   result.switches_hand_guiding = command_->traits.leaves_mode_active;
   result.blocks_queries = command_->traits.blocks_queries;
+  result.preempts_only_own = !command_->traits.preempts_all && !command_->host.options().preempt_when_busy;
   result.preempt = [weak = weak_from_this()](const Error & why) {
     if (const auto goal = weak.lock()) {
       goal->stop(why);
@@ -90,13 +91,35 @@ Status CommandGoal::prepare()
   if (!lease) {
     return tl::unexpected(lease.error());
   }
+  if (Status wanted_still = is_not_overtaken(); !wanted_still) {
+    return wanted_still;
+  }
   lease_ = std::move(*lease);
   return {};
+}
+
+bool CommandGoal::follows_script() const
+{
+  const auto holder = robot().holder(command_->traits.resource);
+  return holder && holder->resource == Resource::script;
+}
+
+Status CommandGoal::is_not_overtaken() const
+{
+  if (!moves_arm(command_->traits.resource)) {
+    return {};
+  }
+  if (command_->host.stops() != stops_before_) {
+    return tl::unexpected(stopped_by_the_driver());
+  }
+  return follows_script_ ? Status() : robot().is_current(received_);  // a script begins a new generation
 }
 
 Status CommandGoal::check(std::vector<GoalQuery> & queries)
 {
   stops_before_ = command_->host.stops();
+  received_ = robot().generation();
+  follows_script_ = follows_script();
   Check result(&robot(), [this] { return prepare(); });
   check_fields(result);
   result.ready();
@@ -181,6 +204,10 @@ bool CommandGoal::leaves_active(const Outcome & outcome) const
 /// A script replaces the control program, and is watched by its runner.
 std::optional<Error> CommandGoal::ended_by_robot() const
 {
+  if (command_->traits.allowed_in_any_state && !command_->traits.preempts_all &&
+      command_->host.stops() != stops_before_) {
+    return stopped_by_the_driver();  // without a lease, nothing else tells it
+  }
   if (!command_->needs_motion() || command_->traits.resource == Resource::script) {
     return std::nullopt;
   }
@@ -203,15 +230,17 @@ Status CommandGoal::acquire()
   if (lease_ || command_->traits.resource == Resource::none) {
     return {};
   }
+  follows_script_ = follows_script_ || follows_script();
   auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
-  if (lease && !command_->traits.preempts_all && command_->host.stops() != stops_before_) {
-    return tl::unexpected(stopped_by_the_driver());  // after this goal had been received
+  if (!lease) {  // a stop is executed in every state
+    return command_->traits.preempts_all ? Status() : tl::unexpected(lease.error());
   }
-  if (lease) {
-    hold(std::move(*lease));
-  } else if (!command_->traits.preempts_all) {  // a stop is executed in every state
-    return tl::unexpected(lease.error());
+  if (!command_->traits.preempts_all) {
+    if (Status wanted_still = is_not_overtaken(); !wanted_still) {
+      return wanted_still;
+    }
   }
+  hold(std::move(*lease));
   return {};
 }
 

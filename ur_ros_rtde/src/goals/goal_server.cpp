@@ -68,6 +68,8 @@ GoalServer::GoalServer(PluginHost & host, const Description & description, MakeG
   rcl_cxx::ActionServerOptions options;
   options.cancel_callback_group = host.stop_group();
   options.goal_callback_group = description.is_stop ? host.stop_group() : nullptr;
+  options.creation_callback_group =
+      description.is_stop ? nullptr : host.creation_group();  // a stop must not wait for its server
   server_ =
       host.node().create_action_server(description.type, description.name, std::move(callbacks), options);
 }

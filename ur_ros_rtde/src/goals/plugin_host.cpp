@@ -4,13 +4,23 @@
 
 namespace ur_ros_rtde {
 
-PluginHost::PluginHost(rcl_cxx::Node & node)
+PluginHost::PluginHost(rcl_cxx::Node & node, bool servers_on_demand)
     : node_(node),
       // Transient local: a client may be rejected before its subscription has been matched.
       rejections_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRejected>(
           "goal_rejections", rcl_cxx::QoS::transient_local(100))),
-      stop_group_(node.create_callback_group())
+      stop_group_(node.create_callback_group()),
+      creation_group_(servers_on_demand ? node.create_callback_group() : nullptr)
 {
+}
+
+std::vector<const rcl_cxx::CallbackGroup *> PluginHost::groups() const
+{
+  std::vector<const rcl_cxx::CallbackGroup *> groups{stop_group_.get()};
+  if (creation_group_) {
+    groups.push_back(creation_group_.get());
+  }
+  return groups;
 }
 
 void PluginHost::publish_rejection(const std::string & action, const rcl_cxx::GoalUUID & id,

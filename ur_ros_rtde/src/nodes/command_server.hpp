@@ -22,7 +22,7 @@ class CommandServer : public Server {
   ~CommandServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
-  const rcl_cxx::CallbackGroup * stop_group() override { return host_->stop_group().get(); }
+  std::vector<const rcl_cxx::CallbackGroup *> groups() override { return host_->groups(); }
   Robot & robot() { return *robot_; }
   void load_plugins() override;
   void create_actions() override;

@@ -14,7 +14,8 @@ DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context,
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
   connection_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
-  host_ = std::make_unique<DashboardHost>(*node_, *connection_, std::move(end_script));
+  host_ = std::make_unique<DashboardHost>(*node_, declare_servers_on_demand(*node_), *connection_,
+                                          std::move(end_script));
 }
 
 DashboardServer::~DashboardServer()

@@ -20,7 +20,7 @@ class DashboardServer : public Server {
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
-  const rcl_cxx::CallbackGroup * stop_group() override { return host_->stop_group().get(); }
+  std::vector<const rcl_cxx::CallbackGroup *> groups() override { return host_->groups(); }
   void load_plugins() override;
   void create_actions() override;
   void start() override { connection_->start(); }

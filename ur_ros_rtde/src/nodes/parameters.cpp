@@ -159,6 +159,15 @@ PluginChoice declare_plugin_choice(rcl_cxx::Node & node)
                                  read_only_descriptor("Names of plugins not to load"))};
 }
 
+bool declare_servers_on_demand(rcl_cxx::Node & node)
+{
+  return declare_choice(
+             node, "servers", "on_demand", {"on_demand", "always"},
+             "When the endpoints of an action are created: for its first action client, or at the start. "
+             "Clients that use the services of an action without an action client need \"always\"") ==
+         "on_demand";
+}
+
 RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node)
 {
   RobotStateReceiver::Options options;
@@ -209,6 +218,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
       declare_choice(node, "on_client_lost", "stop", {"stop", "continue"},
                      "What happens to a goal whose client has disappeared: the arm decelerates to a "
                      "standstill and the goal ends with CLIENT_LOST, or the goal continues") == "stop";
+  parameters.goals.servers_on_demand = declare_servers_on_demand(node);
   robot.model = declare_model(node);
   robot.upper_range_registers =
       declare_choice(node, "register_range", "lower", {"lower", "upper"},

@@ -29,6 +29,9 @@ struct PluginChoice {
 };
 PluginChoice declare_plugin_choice(rcl_cxx::Node & node);
 
+/// Whether the endpoints of an action are created for its first client: the parameter servers.
+bool declare_servers_on_demand(rcl_cxx::Node & node);
+
 /// tf_prefix, qos, rtde_frequency, robot_state_fields, publish_tf
 RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node);
 

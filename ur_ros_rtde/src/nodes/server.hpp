@@ -19,8 +19,8 @@ class Server {
  public:
   virtual ~Server() = default;
   virtual rcl_cxx::Node & node() = 0;
-  /// The callbacks that must not wait for those of the node. They get a thread of their own.
-  virtual const rcl_cxx::CallbackGroup * stop_group() { return nullptr; }
+  /// The callbacks that must not wait for those of the node. Each group gets a thread of its own.
+  virtual std::vector<const rcl_cxx::CallbackGroup *> groups() { return {}; }
   /// Called in this order, the first one before the node has an executor. Neither affects the robot.
   virtual void load_plugins() {}
   virtual void create_actions() {}

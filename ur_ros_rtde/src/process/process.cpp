@@ -129,9 +129,10 @@ std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & conte
                                    std::cref(duplicate)));
     };
     for (const auto & server : servers) {
-      // One executor per node, so that nodes do not delay each other; and one for what nothing may delay.
+      // One executor per node, so that nodes do not delay each other; and one per group of callbacks that
+      // must not wait for those of the node.
       spin([&server](rcl_cxx::Executor & executor) { executor.add_node(server->node()); });
-      if (const auto * group = server->stop_group()) {
+      for (const auto * group : server->groups()) {
         spin([group](rcl_cxx::Executor & executor) { executor.add_callback_group(*group); });
       }
     }

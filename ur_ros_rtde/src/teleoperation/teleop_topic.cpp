@@ -106,6 +106,7 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
   const double interval = seconds(next.arrived - newest_.arrived);
   const bool first = newest_.number == 0 || interval > options_.timeout;
   next.session = newest_.session + (first ? 1 : 0);
+  next.stops = first ? host_.stops() : newest_.stops;
   next.period = newest_.period;
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
@@ -143,7 +144,8 @@ void TeleopTopic::serve(const std::stop_token & stop)
 Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
 {
   try {
-    if (const Message first = newest(); !first.target) {
+    const Message first = newest();
+    if (!first.target) {
       return first.target.error();
     }
     Claim claim;
@@ -152,6 +154,9 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
     auto lease = host_.robot().acquire(std::move(claim));
     if (!lease) {
       return lease.error();
+    }
+    if (host_.stops() != first.stops) {
+      return stopped_by_the_driver();  // after the session had begun
     }
     std::shared_ptr<StopRequest> stop_request;
     {

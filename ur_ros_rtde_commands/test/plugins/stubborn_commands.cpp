@@ -20,6 +20,21 @@ Clock::time_point end_of(const SpeedJAction::Goal & goal)
 
 }  // namespace
 
+/// Its check takes 300 ms, which it must not.
+class SlowToCheck : public Command<SpeedJAction> {
+  void check(const Goal &, Check & check) const override
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    check.start();
+  }
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const std::vector<double> velocities(goal.joint_velocities.begin(), goal.joint_velocities.end());
+    run.control()->speedJ(velocities, goal.acceleration, goal.time);
+    return Outcome::success();
+  }
+};
+
 /// Computes for 200 ms between two looks at the reason to stop, while the arm moves.
 class SlowToLook : public Command<SpeedJAction> {
   StopOptions stop_options(const Goal & goal) const override
@@ -86,6 +101,7 @@ class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> 
   }
 };
 
+UR_ROS_RTDE_EXPORT(SlowToCheck, "slow_to_check")
 UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
 UR_ROS_RTDE_EXPORT(TurnsAndHangs, "turns_and_hangs")

@@ -12,7 +12,7 @@ _CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_sp
             "calls_move_j_relative": "CallsMoveJRelative", "calls_itself": "CallsItself",
             "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn",
             "turns_as_mode": "TurnsAsMode", "turns_as_output": "TurnsAsOutput", "turns_and_hangs": "TurnsAndHangs",
-            "waits_for_output": "WaitsForOutput",
+            "slow_to_check": "SlowToCheck", "waits_for_output": "WaitsForOutput",
             "uses_another_tool": "UsesAnotherTool", "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs"}
 
 

@@ -268,6 +268,30 @@ def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(s
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
 
 
+@pytest.mark.parametrize("event, end, code", [
+    (("safeguard", {}), ("safeguard", {"open": False}), ErrorCode.SAFEGUARD_STOP),
+    (("stop_program", {}), None, ErrorCode.PROGRAM_STOPPED),
+])
+def test_a_goal_that_waits_to_preempt_does_not_outlast_the_end_of_the_program(simulator, client, processes, event, end, code):
+    processes(start_node("driver", simulator.address, FEW_PLUGINS, "on_busy:=preempt"))
+    make_ready(client)
+    first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=10.0)
+    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "the speed from which the arm stops in 1 s")
+    waiting = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0)
+    assert waiting.accepted
+    simulator.control(event[0], **event[1])
+    for goal in (first, waiting):
+        goal.wait_for_result()
+    assert waiting.wait_for_result()[1].error_code == code, waiting.wait_for_result()[1].message
+    if end:
+        simulator.control(end[0], **end[1])
+    make_ready(client)
+    position = simulator.state()["actual"]["position"]
+    time.sleep(0.3)
+    assert simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-3)
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
+
+
 def test_a_stop_sends_feedback_until_the_arm_is_at_rest(simulator, client, processes):
     processes(start_node("driver", simulator.address, FEW_PLUGINS))
     make_ready(client)

@@ -115,6 +115,18 @@ def test_cancel_and_timeout_end_make_ready(robot, simulator):
     make_ready(robot)
 
 
+def test_stand_down_ends_make_ready(robot, simulator):
+    power_off(robot, simulator)
+    goal = robot.send(MakeReady, "make_ready")
+    wait_for(lambda: simulator.state()["robot_mode"] != "POWER_OFF", 10.0, "the arm to be powered on")
+    robot.send(DashboardCommand, "stand_down").succeeded()
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+    begin = simulator.state()["timestamp"]
+    wait_for(lambda: simulator.state()["timestamp"] > begin + 3.0, 10.0, "the time in which make_ready would send the next command")
+    assert simulator.state()["robot_mode"] == "POWER_OFF"
+    make_ready(robot)
+
+
 def test_stand_down_preempts_the_running_motion(robot, simulator):
     goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.5), speed=0.5)
     wait_until_moving(robot)

@@ -272,6 +272,31 @@ def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
         assert recorder.update().max_tcp_speed() == 0.0
 
 
+def test_a_stop_ends_the_session_that_waits_for_the_end_of_the_one_before(addresses, processes):
+    """Messages after a pause begin a session while the arm still decelerates at the end of the previous one."""
+    simulator = processes(Simulator(addresses[1]))
+    driver = processes(start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}",
+                                  "stream_deceleration:=0.1", namespace="waits"))
+    client = Client("waits")
+    try:
+        make_ready(client)
+        with Operator(client, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.15)) as operator:
+            wait_for(lambda: get_joint_speed(client) > 0.1, 10.0, "the arm to move")
+            operator.message = None
+            pause()
+            operator.message = lambda t: twist_message("base")
+            operator.publishes(3)
+            operator.message = lambda t: twist_message("base", -0.15)
+            operator.publishes(3)
+            assert get_joint_speed(client) > 0.02, "the previous session has ended too early for this test"
+            client.send(Stop, "stop").succeeded()
+            recorder = TargetRecorder(simulator)
+            operator.publishes(25)
+            assert recorder.update().max_tcp_speed() == 0.0
+    finally:
+        client.close()
+
+
 def test_a_publisher_that_ended_its_motion_can_start_again_after_a_pause(robot, driver):
     with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
         wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")

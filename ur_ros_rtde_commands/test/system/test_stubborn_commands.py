@@ -7,10 +7,10 @@ from plugin_prefix import environment_of_test_commands
 from robot_fixtures import make_ready
 from support import HOME, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardQuery, ForceMode, MoveJ, SpeedJ
+from ur_ros_rtde_msgs.action import DashboardQuery, ForceMode, MoveJ, SpeedJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_and_hangs,turns_as_output,force_mode_start,dashboard/hangs]"
+PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_and_hangs,slow_to_check,turns_as_output,force_mode_start,dashboard/hangs]"
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
 
 
@@ -85,3 +85,11 @@ def test_what_a_command_of_a_mode_leaves_turning_is_stopped(cell):
     wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would turn")
     assert simulator.is_at_rest() and abs(simulator.state()["actual"]["position"][0] - HOME[0]) < 0.5 * STOPPING_TIME / 2.0
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+
+
+def test_a_goal_whose_check_was_overtaken_by_a_stop_is_rejected(cell):
+    simulator, _driver, client = cell
+    goal = client.send(SpeedJ, "slow_to_check", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0, time=4.0)
+    client.send(Stop, "stop").succeeded()
+    assert not goal.accepted and "the arm was stopped" in client.rejection(goal).message
+    assert simulator.is_at_rest()

@@ -20,6 +20,11 @@ bool conflicts(Resource a, Resource b)
          (b == Resource::script && excluded_by_script(a));
 }
 
+bool may_preempt(const Claim & claim, const Claim & holder)
+{
+  return holder.preempt && (!claim.preempts_only_own || holder.owner == claim.owner);
+}
+
 std::string name(const Claim & claim)
 {
   return claim.id.empty() ? claim.owner : fmt::format("{}, goal {}", claim.owner, claim.id);
@@ -42,12 +47,12 @@ struct Lease::Table {
     return found == permits.end() ? nullptr : *found;
   }
 
-  std::vector<std::function<void(const Error &)>> preempt_functions_of_waiting(Resource resource)
+  std::vector<std::function<void(const Error &)>> preempt_functions_of_waiting(const Claim & newest)
   {
     std::vector<std::function<void(const Error &)>> functions;
     const std::lock_guard lock(mutex);
     for (const Claim * claim : waiting) {
-      if (claim->preempt && conflicts(resource, claim->resource)) {
+      if (conflicts(newest.resource, claim->resource) && may_preempt(newest, *claim)) {
         functions.push_back(claim->preempt);
       }
     }
@@ -69,6 +74,29 @@ struct Lease::Table {
     Table & table_;
     const Claim * const claim_;
   };
+
+  /// Tells the holders of the resource to release it, and waits for that.
+  void preempt_holders(std::unique_lock<std::mutex> & lock, const Claim & claim, const Error & why,
+                       Permit::Clock::time_point deadline, const std::stop_token & stop)
+  {
+    std::vector<std::shared_ptr<Permit>> asked;
+    while (const auto holder = conflicting(claim.resource)) {
+      if (!may_preempt(claim, holder->claim())) {
+        return;
+      }
+      if (std::find(asked.begin(), asked.end(), holder) == asked.end()) {
+        asked.push_back(holder);
+        lock.unlock();
+        holder->claim().preempt(why);
+        lock.lock();
+        continue;
+      }
+      const auto is_released = [&] { return conflicting(claim.resource) != holder; };
+      if (!released.wait_until(lock, stop, deadline, is_released)) {
+        return;
+      }
+    }
+  }
 
   /// The mutex must be held.
   static Expected<Lease> grant(const std::shared_ptr<Table> & table, Claim claim,
@@ -147,34 +175,29 @@ Expected<Lease> Arbiter::acquire(Claim claim, const Admission & admit)
   return Lease::Table::grant(table_, std::move(claim), admit);
 }
 
-Expected<Lease> Arbiter::acquire_preempting(Claim claim, const Admission & admit,
-                                            std::chrono::milliseconds timeout, const std::stop_token & stop)
+Expected<Lease> Arbiter::acquire_preempting(const Claim & claim, const Admission & admit,
+                                            const Retry & retry, Permit::Clock::time_point deadline,
+                                            const std::stop_token & stop)
 {
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
   const Error why{ErrorCode::preempted, fmt::format("preempted by {}", name(claim))};
-  std::vector<std::shared_ptr<Permit>> asked;
-  for (const auto & preempt : table_->preempt_functions_of_waiting(claim.resource)) {
+  for (const auto & preempt : table_->preempt_functions_of_waiting(claim)) {
     preempt(why);  // the newest claim wins
   }
   std::unique_lock lock(table_->mutex);
   const Lease::Table::Waiting waiting(*table_, claim);
-  while (const auto holder = table_->conflicting(claim.resource)) {
-    if (!holder->claim().preempt) {
-      break;
+  while (true) {
+    table_->preempt_holders(lock, claim, why, deadline, stop);
+    auto lease = Lease::Table::grant(table_, claim, admit);
+    if (lease || table_->conflicting(claim.resource)) {
+      return lease;
     }
-    if (std::find(asked.begin(), asked.end(), holder) == asked.end()) {
-      asked.push_back(holder);
-      lock.unlock();
-      holder->claim().preempt(why);
-      lock.lock();
-      continue;
-    }
-    const auto is_released = [&] { return table_->conflicting(claim.resource) != holder; };
-    if (!table_->released.wait_until(lock, stop, deadline, is_released)) {
-      break;
+    lock.unlock();
+    const bool again = retry();
+    lock.lock();
+    if (!again || stop.stop_requested()) {
+      return lease;
     }
   }
-  return Lease::Table::grant(table_, claim, admit);
 }
 
 std::shared_ptr<const Permit> Arbiter::holder(Resource resource) const

@@ -22,9 +22,12 @@ class Arbiter {
   Arbiter();
   /// busy, with the holder's name and id, if a conflicting resource is held.
   Expected<Lease> acquire(Claim claim, const Admission & admit);
-  /// Preempts the current holders and waits up to `timeout`, or until `stop`, for them; then busy as above.
-  Expected<Lease> acquire_preempting(Claim claim, const Admission & admit, std::chrono::milliseconds timeout,
-                                     const std::stop_token & stop);
+  /// Called if a claim is not admitted. Waits for the end of the cause, and returns true if it has ended.
+  using Retry = std::function<bool()>;
+  /// Preempts the current holders and those that wait, and waits until `deadline`, or until `stop`, for them;
+  /// then busy as above.
+  Expected<Lease> acquire_preempting(const Claim & claim, const Admission & admit, const Retry & retry,
+                                     Permit::Clock::time_point deadline, const std::stop_token & stop);
   /// The holder that a claim on `resource` would conflict with.
   std::shared_ptr<const Permit> holder(Resource resource) const;
   /// All holders that may move the arm.

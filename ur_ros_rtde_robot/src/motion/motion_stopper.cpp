@@ -183,10 +183,12 @@ void MotionStopper::require(const StopOptions & options)
   if (!operation_) {
     operation_ = std::make_unique<Operation>();
     operation_->options = options;
-  } else {
-    operation_->options = stronger(operation_->options, options);
+    return;
   }
-  options_changed_ = true;
+  operation_->joined = true;
+  const StopOptions joined = stronger(operation_->options, options);
+  options_changed_ = options_changed_ || !(joined == operation_->options);
+  operation_->options = joined;
 }
 
 void MotionStopper::serve(const std::stop_token & stop)
@@ -212,30 +214,40 @@ void MotionStopper::serve(const std::stop_token & stop)
 
 void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
 {
-  Expected<StopReport> result;
+  std::optional<Expected<StopReport>> result;
   do {
     options_changed_ = false;
+    operation_->joined = false;
     const StopOptions options = operation_->options;
     lock.unlock();
-    try {
-      result = execute(options);
-    } catch (const std::exception & error) {
-      result = failure(ErrorCode::exception, printable(error.what()));
+    auto pass = execute_guarded(options);
+    const bool found_nothing = pass && pass->means == StopMeans::nothing_moved;
+    if (!result || !*result || !found_nothing) {
+      result = std::move(pass);
     }
     lock.lock();
-  } while (options_changed_);
+  } while (operation_->joined);
   last_ = operation_->stopping;
-  operation_->promise.set_value(result);
+  operation_->promise.set_value(*result);
   operation_.reset();
   changed_.notify_all();
   lock.unlock();
-  if (result) {
+  if (*result) {
     logger_.reset();
   } else {
     logger_.log_on_change(LogLevel::warn,
-                          fmt::format("standstill is not confirmed: {}", result.error().message));
+                          fmt::format("standstill is not confirmed: {}", result->error().message));
   }
   lock.lock();
+}
+
+Expected<StopReport> MotionStopper::execute_guarded(const StopOptions & options)
+{
+  try {
+    return execute(options);
+  } catch (const std::exception & error) {
+    return failure(ErrorCode::exception, printable(error.what()));
+  }
 }
 
 void MotionStopper::supervise()

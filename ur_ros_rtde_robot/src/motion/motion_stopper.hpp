@@ -64,6 +64,8 @@ class MotionStopper {
   /// The stop under way.
   struct Operation {
     StopOptions options;
+    /// By a request after it has been looked at what moves: its holder may just have started something.
+    bool joined = false;
     std::promise<Expected<StopReport>> promise;
     Stopping stopping = promise.get_future().share();
   };
@@ -96,9 +98,12 @@ class MotionStopper {
   void supervise();
 
   // What follows runs on the stopper's thread, without the mutex.
+  Expected<StopReport> execute_guarded(const StopOptions & options);
   Expected<StopReport> execute(const StopOptions & options);
   Expected<StopReport> stop_without_rtde() const;
   bool is_done(const StopOptions & options) const;
+  /// For an arm that the robot has stopped: its program would go on at the end of the stop.
+  Status end_paused_program(Activities started, const StopOptions & options);
   Status end_call_of_revoked_holder();
   Status stop_by_command(const StopOptions & options);
   Status stop_by_dashboard(const StopOptions & options);
@@ -133,7 +138,7 @@ class MotionStopper {
   std::optional<Supervision> supervision_;
   unsigned beginning_ = 0;
   bool closed_ = false;
-  std::atomic<bool> options_changed_ = false;  ///< since the operation is being executed
+  std::atomic<bool> options_changed_ = false;  ///< became stronger since the operation is being executed
   bool stops_in_joint_space_ = false;          ///< stopper's thread only
   std::jthread thread_;
 };

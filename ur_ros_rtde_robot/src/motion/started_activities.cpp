@@ -43,9 +43,10 @@ Activities StartedActivities::now() const
   const auto view = tracker_.view();
   if (const auto control = interfaces_.control_interface()) {
     result = result | to_activities(control->getStartedMotions());
-    // ur_rtde does not forget a move that has reached its target.
-    const bool is_pending =
-        view.async.word == static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove());
+    // ur_rtde does not forget a move that has reached its target. The status before the move came over
+    // another connection, which may be ahead of the samples or behind them.
+    const AsyncStatus before{static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove())};
+    const bool is_pending = view.program_running && (view.async_is_stale || !view.async.has_begun_since(before));
     if (!is_pending && !view.operating()) {
       result = result.without(moves);
     }

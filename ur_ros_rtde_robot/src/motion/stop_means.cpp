@@ -125,13 +125,12 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     }
     const Activities started = activities_.now();
     if (stops_by_itself(*sample, started) && wait_for_standstill(program_stop_timeout, options)) {
-      // A script that the robot has paused would resume at the end of the stop.
-      if (const Status ended = started.contains(Activity::script) ? stop_by_dashboard(options) : Status();
-          !ended) {
-        return failure(ended.error().code,
-                       fmt::format("the paused script has not ended: {}", ended.error().message));
-      }
-      return report(StopMeans::stopped_by_robot);
+      const Status ended = end_paused_program(started, options);
+      return ended ? Expected<StopReport>(report(StopMeans::stopped_by_robot))
+                   : failure(ended.error().code,
+                             fmt::format("the paused program has not ended, and may go on when the robot may "
+                                         "move again: stop it on the pendant ({})",
+                                         ended.error().message));
     }
     const Status stopped = (this->*next.attempt)(options);
     if (stopped) {
@@ -170,6 +169,27 @@ Expected<StopReport> MotionStopper::stop_without_rtde() const
   return failure(ErrorCode::link_lost,
                  fmt::format("cannot tell the robot to stop: {}; dashboard server: {}; {}", link,
                              stopped.error().message, watchdog));
+}
+
+Status MotionStopper::end_paused_program(Activities started, const StopOptions & options)
+{
+  const auto has_ended = [](const Sample & sample) {
+    return sample.runtime_state == RuntimeState::stopped || sample.runtime_state == RuntimeState::stopping;
+  };
+  if (!started.contains(Activity::script) && has_ended(state_.latest().value_or(Sample{}))) {
+    return {};
+  }
+  const Status by_dashboard = stop_by_dashboard(options);
+  if (by_dashboard && wait_for(program_stop_timeout, has_ended)) {
+    return {};
+  }
+  const Status by_watchdog = stop_by_watchdog(options);
+  return by_watchdog ? by_watchdog
+                     : failure(by_watchdog.error().code,
+                               fmt::format("{}; {}",
+                                           by_dashboard ? "the program was stopped, but has not ended"
+                                                        : by_dashboard.error().message,
+                                           by_watchdog.error().message));
 }
 
 bool MotionStopper::is_done(const StopOptions & options) const
@@ -336,10 +356,15 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
   interfaces_.close_control();
-  if (watchdog_frequency() == 0.0) {
+  const double frequency = watchdog_frequency();
+  if (frequency == 0.0) {
     return failure(ErrorCode::not_supported, "the program has no watchdog (watchdog_frequency: 0)");
   }
-  return wait_for_standstill(program_stop_timeout, options)
+  // Until its end, the program may move the arm again.
+  const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [](const Sample & sample) {
+    return sample.runtime_state == RuntimeState::stopped;
+  });
+  return ended && wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the watchdog of the program has not stopped the arm");
 }

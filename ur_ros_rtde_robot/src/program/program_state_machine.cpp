@@ -70,7 +70,8 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     {S::resuming, E::program_started, G::always, S::running, A::none},
     {S::resuming, E::start_failed, G::always, S::unclaimed, A::none},
     {S::resuming, E::start_aborted, G::always, S::unclaimed, A::none},
-    {S::resuming, E::resume_blocked, G::always, S::unclaimed, A::none},
+    {S::resuming, E::resume_blocked, G::stopped, S::unclaimed, A::none},
+    {S::resuming, E::resume_blocked, G::not_stopped, S::orphaned, A::none},
     {S::resuming, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
 
     // The control program has ended.

@@ -38,6 +38,8 @@ struct Claim {
   bool switches_hand_guiding = false;
   /// The control program answers no query while this holder uses it.
   bool blocks_queries = false;
+  /// Preempts only holders with the same `owner`.
+  bool preempts_only_own = false;
   /// Tells this holder why it has to release the resource. Called on any thread; must not wait. Empty: this
   /// holder cannot be preempted.
   std::function<void(const Error & why)> preempt;

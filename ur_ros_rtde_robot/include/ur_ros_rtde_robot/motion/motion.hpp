@@ -47,6 +47,7 @@ struct StopOptions {
   std::optional<std::chrono::milliseconds> timeout;
   /// Modes that stay on.
   Activities keep;
+  bool operator==(const StopOptions &) const = default;
 };
 
 struct StopReport {

@@ -72,6 +72,12 @@ struct AsyncStatus {
   /// Index of the current waypoint of a path; 0 for other moves.
   unsigned progress() const { return word & 0x7FFFU; }
   bool operator==(const AsyncStatus & other) const { return word == other.word; }
+  /// An operation has begun since `before`, a status of the same program that may also be a newer one.
+  bool has_begun_since(const AsyncStatus & before) const
+  {
+    const unsigned begun = (operation() - before.operation()) & 0x7FU;
+    return begun != 0 && begun < 0x40U;
+  }
 };
 
 /// All fields of one RTDE package, which belong to the same control cycle. Copied without allocation. Numbers
