@@ -177,13 +177,17 @@ TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
 
 TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)
 {
-  make_both();
+  controller.start();
+  auto options = robot_options();
+  options.watchdog_frequency = 2.0;
+  make_robot(options);
+  ASSERT_TRUE(becomes_ready());
   const std::string dwelling =
       "def dwell():\n"
       "  q = get_actual_joint_positions()\n"
       "  q[0] = q[0] + 0.2\n"
       "  movej(q, a=10, v=2)\n"
-      "  sleep(0.3)\n"
+      "  sleep(1)\n"
       "  q[0] = q[0] + 1\n"
       "  movej(q, a=2, v=0.8)\n"
       "end\n";

@@ -65,7 +65,8 @@ class MotionStopper::Beginning {
 MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver & state,
                              RtdeInterfaces & interfaces, InputRegisters & registers,
                              const MotionTracker & tracker, const StartedActivities & activities,
-                             const Arbiter & arbiter, LogFunction log)
+                             const Arbiter & arbiter, std::function<bool()> has_left_program,
+                             LogFunction log)
     : options_(options),
       state_(state),
       interfaces_(interfaces),
@@ -73,6 +74,7 @@ MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver &
       tracker_(tracker),
       activities_(activities),
       arbiter_(arbiter),
+      has_left_program_(std::move(has_left_program)),
       logger_(std::move(log)),
       last_(completed(StopReport{})),
       thread_([this](const std::stop_token & stop) { serve(stop); })

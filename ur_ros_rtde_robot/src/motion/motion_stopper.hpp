@@ -37,7 +37,8 @@ class MotionStopper {
 
   MotionStopper(const RobotOptions & options, const StateReceiver & state, RtdeInterfaces & interfaces,
                 InputRegisters & registers, const MotionTracker & tracker,
-                const StartedActivities & activities, const Arbiter & arbiter, LogFunction log);
+                const StartedActivities & activities, const Arbiter & arbiter,
+                std::function<bool()> has_left_program, LogFunction log);
   ~MotionStopper() { close(); }
   MotionStopper(const MotionStopper &) = delete;
   MotionStopper & operator=(const MotionStopper &) = delete;
@@ -102,8 +103,12 @@ class MotionStopper {
   Expected<StopReport> execute(const StopOptions & options);
   Expected<StopReport> stop_without_rtde() const;
   bool is_done(const StopOptions & options) const;
-  /// For an arm that the robot has stopped: its program would go on at the end of the stop.
-  Status end_paused_program(Activities started, const StopOptions & options);
+  /// The arm is at rest by `means`. Ends also what may move it again.
+  Expected<StopMeans> settle(StopMeans means, const StopOptions & options);
+  /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost, may
+  /// move it again.
+  bool may_go_on(const Sample & sample, Activities started) const;
+  Status end_program(const StopOptions & options);
   Status end_call_of_revoked_holder();
   Status stop_by_command(const StopOptions & options);
   Status stop_by_dashboard(const StopOptions & options);
@@ -129,6 +134,7 @@ class MotionStopper {
   const MotionTracker & tracker_;
   const StartedActivities & activities_;
   const Arbiter & arbiter_;
+  const std::function<bool()> has_left_program_;  ///< see ControlProgramManager
   ChangeLogger logger_;  ///< stopper's thread only
 
   mutable std::mutex mutex_;

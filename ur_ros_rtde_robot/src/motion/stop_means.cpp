@@ -108,14 +108,17 @@ std::span<const MotionStopper::Means> MotionStopper::means()
 Expected<StopReport> MotionStopper::execute(const StopOptions & options)
 {
   const auto begin = tracker_.view().controller_time;
-  const auto report = [&](StopMeans means) {
-    return StopReport{means, tracker_.view().controller_time - begin};
+  const auto report = [&](const Expected<StopMeans> & means) -> Expected<StopReport> {
+    if (!means) {
+      return tl::unexpected(means.error());
+    }
+    return StopReport{*means, tracker_.view().controller_time - begin};
   };
   if (!state_.link().connected) {
     return stop_without_rtde();
   }
   if (is_done(options)) {
-    return report(StopMeans::nothing_moved);
+    return report(settle(StopMeans::nothing_moved, options));
   }
   std::string problems;
   for (const Means & next : means()) {
@@ -125,12 +128,7 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     }
     const Activities started = activities_.now();
     if (stops_by_itself(*sample, started) && wait_for_standstill(program_stop_timeout, options)) {
-      const Status ended = end_paused_program(started, options);
-      return ended ? Expected<StopReport>(report(StopMeans::stopped_by_robot))
-                   : failure(ended.error().code,
-                             fmt::format("the paused program has not ended, and may go on when the robot may "
-                                         "move again: stop it on the pendant ({})",
-                                         ended.error().message));
+      return report(settle(StopMeans::stopped_by_robot, options));
     }
     const Status stopped = (this->*next.attempt)(options);
     if (stopped) {
@@ -171,16 +169,37 @@ Expected<StopReport> MotionStopper::stop_without_rtde() const
                              stopped.error().message, watchdog));
 }
 
-Status MotionStopper::end_paused_program(Activities started, const StopOptions & options)
+Expected<StopMeans> MotionStopper::settle(StopMeans means, const StopOptions & options)
 {
-  const auto has_ended = [](const Sample & sample) {
-    return sample.runtime_state == RuntimeState::stopped || sample.runtime_state == RuntimeState::stopping;
-  };
-  if (!started.contains(Activity::script) && has_ended(state_.latest().value_or(Sample{}))) {
-    return {};
+  if (!may_go_on(state_.latest().value_or(Sample{}), activities_.now())) {
+    return means;
   }
+  if (const Status ended = end_program(options); !ended) {
+    return failure(ended.error().code,
+                   fmt::format("the program on the robot has not ended and may move the arm again: stop it on the "
+                               "pendant ({})",
+                               ended.error().message));
+  }
+  return std::max(means, StopMeans::stopped_by_robot);
+}
+
+bool MotionStopper::may_go_on(const Sample & sample, Activities started) const
+{
+  if (started.contains(Activity::script)) {
+    return true;  // even if the controller is still compiling it
+  }
+  const bool has_ended =
+      sample.runtime_state == RuntimeState::stopped || sample.runtime_state == RuntimeState::stopping;
+  const bool was_interrupted = !sample.is_program_running() && !started.empty();
+  return !has_ended && (was_interrupted || has_left_program_());
+}
+
+Status MotionStopper::end_program(const StopOptions & options)
+{
   const Status by_dashboard = stop_by_dashboard(options);
-  if (by_dashboard && wait_for(program_stop_timeout, has_ended)) {
+  if (by_dashboard && wait_for(program_stop_timeout, [](const Sample & sample) {
+        return sample.runtime_state == RuntimeState::stopped;
+      })) {
     return {};
   }
   const Status by_watchdog = stop_by_watchdog(options);

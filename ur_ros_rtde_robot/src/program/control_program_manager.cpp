@@ -109,6 +109,12 @@ ControlOwner ControlProgramManager::control_owner() const
   return ur_ros_rtde::control_owner(state_);
 }
 
+bool ControlProgramManager::has_left_program() const
+{
+  const ProgramState state = state_;
+  return state == ProgramState::ended || state == ProgramState::orphaned;
+}
+
 std::pair<ProgramState, ProgramObservation> ControlProgramManager::snapshot() const
 {
   const std::lock_guard lock(mutex_);

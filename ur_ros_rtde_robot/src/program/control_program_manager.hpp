@@ -48,6 +48,8 @@ class ControlProgramManager {
   RobotStatus status() const;
   Status wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop) const;
   ControlOwner control_owner() const;
+  /// A program of this driver, without a connection to it, has not been seen stopped.
+  bool has_left_program() const;
 
   /// To be called with each sample on the receiving thread.
   void on_sample(const Sample & sample);
