@@ -71,7 +71,8 @@ TEST_F(ActionAnnouncementTest, AllClientsHaveTheSameServer)
 TEST_F(ActionAnnouncementTest, NothingServesWithoutAnActionClient)
 {
   const auto announced = announce("announced");
-  const auto goals = rcl_cxx::create_client<Fibonacci::Impl::SendGoalService>(*node, "announced/_action/send_goal");
+  const auto goals =
+      rcl_cxx::create_client<Fibonacci::Impl::SendGoalService>(*node, "announced/_action/send_goal");
   EXPECT_FALSE(goals->wait_for_service(std::chrono::milliseconds(200)));
   const auto waiting = rcl_cxx::create_action_client<Fibonacci>(*node, "announced");
   EXPECT_TRUE(goals->wait_for_service(kLimit));

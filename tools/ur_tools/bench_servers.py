@@ -28,8 +28,8 @@ def _client(programs: Programs, layout: Layout, options: argparse.Namespace, arg
 def _measure(layout: Layout, options: argparse.Namespace, servers: str) -> Dict[str, dict]:
     env = bench_session.environment(layout)
     with Programs(bench_session.log_folder(layout, options.address)) as programs:
-        alone = _client(programs, layout, options, [])["other node"]
         simulation.start_simulator(programs, layout, env, options.address, options.model)
+        alone = _client(programs, layout, options, [])["other node"]
         begin = time.monotonic()
         driver = simulation.start_node(programs, layout, env, "driver", options.address, f"servers:={servers}",
                                        debugged=("command_server", "dashboard_server"))

@@ -61,8 +61,9 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       interfaces(options, control_scripts, log),
       registers(options, interfaces),
       activities(interfaces, registers, tracker),
-      stopper(options, state, interfaces, registers, tracker, activities, arbiter,
-              [this] { return manager.has_left_program(); }, log),
+      stopper(
+          options, state, interfaces, registers, tracker, activities, arbiter,
+          [this] { return manager.has_left_program(); }, log),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},

@@ -22,8 +22,7 @@ Expected<Generation> admit()
 Expected<Lease> preempting(Arbiter & arbiter, const Claim & claim, std::chrono::milliseconds timeout,
                            const std::stop_token & stop = {})
 {
-  return arbiter.acquire_preempting(
-      claim, admit, [] { return false; }, Permit::Clock::now() + timeout, stop);
+  return arbiter.acquire_preempting(claim, admit, [] { return false; }, Permit::Clock::now() + timeout, stop);
 }
 
 TEST(ArbiterTest, GrantsAResourceToOneHolderAndNamesIt)
@@ -135,12 +134,12 @@ TEST(ArbiterTest, RetriesWhileTheCauseOfTheRejectionEnds)
   const auto admitted_the_third_time = [&]() -> Expected<Generation> {
     return ++rejected < 3 ? failure(ErrorCode::busy, "stopping") : Expected<Generation>(Generation{});
   };
-  EXPECT_TRUE(arbiter.acquire_preempting(
-      claim(Resource::motion), admitted_the_third_time, [] { return true; }, Permit::Clock::now() + 10s, {}));
+  EXPECT_TRUE(arbiter.acquire_preempting(claim(Resource::motion), admitted_the_third_time,
+                                         [] { return true; }, Permit::Clock::now() + 10s, {}));
   EXPECT_EQ(rejected, 3);
   rejected = 0;
-  EXPECT_FALSE(arbiter.acquire_preempting(
-      claim(Resource::motion), admitted_the_third_time, [] { return false; }, Permit::Clock::now() + 10s, {}));
+  EXPECT_FALSE(arbiter.acquire_preempting(claim(Resource::motion), admitted_the_third_time,
+                                          [] { return false; }, Permit::Clock::now() + 10s, {}));
   EXPECT_EQ(rejected, 1);
 }
 
@@ -201,14 +200,12 @@ TEST(ArbiterTest, TheNewestOfTwoPreemptingClaimsWins)
   auto older = claim(Resource::motion, "move_j", "1");
   older.preempt = [&](const Error &) { older_stops.request_stop(); };
   std::optional<bool> older_granted;
-  std::jthread waiting([&] {
-    older_granted = preempting(arbiter, older, 20s, older_stops.get_token()).has_value();
-  });
+  std::jthread waiting(
+      [&] { older_granted = preempting(arbiter, older, 20s, older_stops.get_token()).has_value(); });
   while (!asked) {
     std::this_thread::yield();
   }
-  std::jthread newer(
-      [&] { EXPECT_TRUE(preempting(arbiter, claim(Resource::motion, "stop", "2"), 20s)); });
+  std::jthread newer([&] { EXPECT_TRUE(preempting(arbiter, claim(Resource::motion, "stop", "2"), 20s)); });
   waiting.join();
   EXPECT_FALSE(*older_granted);
   held.reset();

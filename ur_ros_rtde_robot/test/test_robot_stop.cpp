@@ -172,7 +172,8 @@ TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
   ASSERT_TRUE(eventually([&] { return at_rest(); }));
   const auto report = robot->stop_motion();
   ASSERT_FALSE(report);
-  EXPECT_NE(report.error().message.find("stop it on the pendant"), std::string::npos) << report.error().message;
+  EXPECT_NE(report.error().message.find("stop it on the pendant"), std::string::npos)
+      << report.error().message;
 }
 
 TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)

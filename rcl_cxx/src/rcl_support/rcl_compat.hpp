@@ -63,7 +63,8 @@ inline rcl_ret_t matched_event_init(rcl_event_t * event, const rcl_publisher_t *
 #if RCL_VERSION_MAJOR >= 6
   return rcl_publisher_event_init(event, publisher, RCL_PUBLISHER_MATCHED);
 #else
-  return rcl_publisher_is_valid(publisher) && event != nullptr ? RCL_RET_UNSUPPORTED : RCL_RET_INVALID_ARGUMENT;
+  return rcl_publisher_is_valid(publisher) && event != nullptr ? RCL_RET_UNSUPPORTED
+                                                               : RCL_RET_INVALID_ARGUMENT;
 #endif
 }
 

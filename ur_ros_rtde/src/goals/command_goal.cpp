@@ -232,15 +232,17 @@ Status CommandGoal::acquire()
   }
   follows_script_ = follows_script_ || follows_script();
   auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
-  if (!lease) {  // a stop is executed in every state
-    return command_->traits.preempts_all ? Status() : tl::unexpected(lease.error());
-  }
-  if (!command_->traits.preempts_all) {
+  if (!command_->traits.preempts_all) {  // a stop is executed in every state
     if (Status wanted_still = is_not_overtaken(); !wanted_still) {
-      return wanted_still;
+      return wanted_still;  // also names the cause if there is no lease
+    }
+    if (!lease) {
+      return tl::unexpected(lease.error());
     }
   }
-  hold(std::move(*lease));
+  if (lease) {
+    hold(std::move(*lease));
+  }
   return {};
 }
 

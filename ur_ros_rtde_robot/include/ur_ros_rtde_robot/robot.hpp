@@ -81,8 +81,8 @@ class Robot {
   /// way, nobody guides the arm by hand, and no other holder is in the way.
   Expected<Lease> acquire(Claim claim);
   /// The same, after preempting the holders that are in the way. Waits up to `timeout`, or until `stop`, for
-  /// them, for the stop that they lead to, and for the control program after a script. Any other obstacle is an
-  /// error at once: the arm must not move when it has disappeared.
+  /// them, for the stop that they lead to, and for the control program after a script. Any other obstacle is
+  /// an error at once: the arm must not move when it has disappeared.
   Expected<Lease> acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
                                      const std::stop_token & stop = {});
   /// Success if acquire() would grant the claim to a caller that preempts all holders.

@@ -175,9 +175,8 @@ Expected<Lease> Arbiter::acquire(Claim claim, const Admission & admit)
   return Lease::Table::grant(table_, std::move(claim), admit);
 }
 
-Expected<Lease> Arbiter::acquire_preempting(const Claim & claim, const Admission & admit,
-                                            const Retry & retry, Permit::Clock::time_point deadline,
-                                            const std::stop_token & stop)
+Expected<Lease> Arbiter::acquire_preempting(const Claim & claim, const Admission & admit, const Retry & retry,
+                                            Permit::Clock::time_point deadline, const std::stop_token & stop)
 {
   const Error why{ErrorCode::preempted, fmt::format("preempted by {}", name(claim))};
   for (const auto & preempt : table_->preempt_functions_of_waiting(claim)) {

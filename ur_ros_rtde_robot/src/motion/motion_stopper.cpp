@@ -65,8 +65,7 @@ class MotionStopper::Beginning {
 MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver & state,
                              RtdeInterfaces & interfaces, InputRegisters & registers,
                              const MotionTracker & tracker, const StartedActivities & activities,
-                             const Arbiter & arbiter, std::function<bool()> has_left_program,
-                             LogFunction log)
+                             const Arbiter & arbiter, std::function<bool()> has_left_program, LogFunction log)
     : options_(options),
       state_(state),
       interfaces_(interfaces),

@@ -105,8 +105,8 @@ class MotionStopper {
   bool is_done(const StopOptions & options) const;
   /// The arm is at rest by `means`. Ends also what may move it again.
   Expected<StopMeans> settle(StopMeans means, const StopOptions & options);
-  /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost, may
-  /// move it again.
+  /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost,
+  /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
   Status end_program(const StopOptions & options);
   Status end_call_of_revoked_holder();
@@ -135,7 +135,7 @@ class MotionStopper {
   const StartedActivities & activities_;
   const Arbiter & arbiter_;
   const std::function<bool()> has_left_program_;  ///< see ControlProgramManager
-  ChangeLogger logger_;  ///< stopper's thread only
+  ChangeLogger logger_;                           ///< stopper's thread only
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

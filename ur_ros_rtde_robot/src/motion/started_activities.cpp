@@ -46,7 +46,8 @@ Activities StartedActivities::now() const
     // ur_rtde does not forget a move that has reached its target. The status before the move came over
     // another connection, which may be ahead of the samples or behind them.
     const AsyncStatus before{static_cast<std::uint32_t>(control->getAsyncStatusBeforeLastMove())};
-    const bool is_pending = view.program_running && (view.async_is_stale || !view.async.has_begun_since(before));
+    const bool is_pending =
+        view.program_running && (view.async_is_stale || !view.async.has_begun_since(before));
     if (!is_pending && !view.operating()) {
       result = result.without(moves);
     }

@@ -175,10 +175,11 @@ Expected<StopMeans> MotionStopper::settle(StopMeans means, const StopOptions & o
     return means;
   }
   if (const Status ended = end_program(options); !ended) {
-    return failure(ended.error().code,
-                   fmt::format("the program on the robot has not ended and may move the arm again: stop it on the "
-                               "pendant ({})",
-                               ended.error().message));
+    return failure(
+        ended.error().code,
+        fmt::format("the program on the robot has not ended and may move the arm again: stop it on the "
+                    "pendant ({})",
+                    ended.error().message));
   }
   return std::max(means, StopMeans::stopped_by_robot);
 }

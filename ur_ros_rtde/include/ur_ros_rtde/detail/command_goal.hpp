@@ -88,7 +88,7 @@ class CommandGoal : public Goal {
   // When the goal was received:
   std::uint32_t stops_before_ = 0;  ///< CommandHost::stops()
   Generation received_;
-  bool follows_script_ = false;  ///< which it preempts
+  bool follows_script_ = false;                                       ///< which it preempts
   std::optional<std::shared_future<Expected<StopReport>>> stopping_;  ///< of a stop
   std::string preempted_goal_;
   mutable std::mutex lease_mutex_;  ///< guards what follows
