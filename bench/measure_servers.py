@@ -69,7 +69,10 @@ def new_client(expected):
         sys.exit("bench: a goal was not accepted")
     rclpy.spin_until_future_complete(node, response.result().get_result_async(), timeout_sec=LIMIT)
     wait_until(lambda: expected <= listed(node), "all actions")
-    return {"found": time.monotonic() - begin, "accepted": accepted}
+    found = time.monotonic() - begin
+    client.destroy()
+    node.destroy_node()  # and with it the participant: this client does not count as killed
+    return {"found": found, "accepted": accepted}
 
 
 def other_node():
