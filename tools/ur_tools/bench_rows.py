@@ -83,8 +83,8 @@ SERVER_PARTS: Tuple[Tuple[str, str, str], ...] = (
     ("", "own memory", "MB of the driver without a client, shared pages divided among the processes"),
     ("", "endpoints", "in the domain, without a client"),
     ("", "other node", "MB more in another node of the domain than without a driver"),
-    *((part, p, f"s until a new client {what}, after clients were killed")
-      for part, what in (("accepted", "has its first goal accepted"), ("found", "has also found all actions")) for p in ("p50", "p90", "max")),
+    *(("accepted", p, "s until a new client has its first goal accepted, after clients were killed") for p in ("p50", "p90", "max")),
+    *(("found", p, "s until it has also found all actions") for p in ("p50", "p90", "max")),
     *((part, memory, "MB of the driver") for part in ("after ten", "after all") for memory in ("memory", "own memory")),
 )
 # Interruptions of --recovery, and the targets.
