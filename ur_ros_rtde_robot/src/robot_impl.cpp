@@ -208,7 +208,7 @@ Status Robot::Impl::ready_to_move() const
 Generation Robot::Impl::generation() const
 {
   const auto view = tracker.view();
-  return {view.program, interfaces.starts(), view.link};
+  return {view.program, interfaces.starts(), view.link, stopper.ended_programs() + scripts.ended_programs()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

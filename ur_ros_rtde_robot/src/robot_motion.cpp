@@ -22,19 +22,18 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::mill
                                           const std::stop_token & stop)
 {
   const auto deadline = Permit::Clock::now() + timeout;
-  const auto held = holder(claim.resource);
-  const bool after_script = held && held->resource == Resource::script;
+  const Generation begin = generation();
   bool was_stopping = false;
   const auto admit = [&] {
     was_stopping = impl_->stopper.is_stopping();
     return impl_->admit(claim);
   };
-  // Whatever else keeps the arm from being moved has not been asked for by this claim: it fails.
   const auto retry = [&] {
     if (was_stopping) {
       return impl_->stopper.wait_until_idle(deadline, stop);
     }
-    return after_script && impl_->wait_for_control_program(deadline);
+    const bool ended_by_driver = generation().ended_by_driver != begin.ended_by_driver;
+    return ended_by_driver && is_continued(begin) && impl_->wait_for_control_program(deadline);
   };
   return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, stop);
 }
@@ -69,6 +68,15 @@ Status Robot::is_current(const Generation & generation) const
   }
   return failure(ErrorCode::program_stopped,
                  "the control program was replaced or started again; the motion is not resumed");
+}
+
+Status Robot::is_continued(const Generation & generation) const
+{
+  const Generation now = impl_->generation();
+  const std::uint32_t by_driver = now.ended_by_driver - generation.ended_by_driver;
+  const bool continued = now.link == generation.link && now.ends - generation.ends == by_driver &&
+                         (by_driver > 0 || now.starts == generation.starts);
+  return continued ? Status() : is_current(generation);
 }
 
 Status Robot::may_continue(const Lease & lease) const

@@ -91,17 +91,11 @@ Status CommandGoal::prepare()
   if (!lease) {
     return tl::unexpected(lease.error());
   }
-  if (Status wanted_still = is_not_overtaken(); !wanted_still) {
-    return wanted_still;
+  if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
+    return not_overtaken;
   }
   lease_ = std::move(*lease);
   return {};
-}
-
-bool CommandGoal::follows_script() const
-{
-  const auto holder = robot().holder(command_->traits.resource);
-  return holder && holder->resource == Resource::script;
 }
 
 Status CommandGoal::is_not_overtaken() const
@@ -112,14 +106,13 @@ Status CommandGoal::is_not_overtaken() const
   if (command_->host.stops() != stops_before_) {
     return tl::unexpected(stopped_by_the_driver());
   }
-  return follows_script_ ? Status() : robot().is_current(received_);  // a script begins a new generation
+  return robot().is_continued(received_);
 }
 
 Status CommandGoal::check(std::vector<GoalQuery> & queries)
 {
   stops_before_ = command_->host.stops();
   received_ = robot().generation();
-  follows_script_ = follows_script();
   Check result(&robot(), [this] { return prepare(); });
   check_fields(result);
   result.ready();
@@ -230,11 +223,10 @@ Status CommandGoal::acquire()
   if (lease_ || command_->traits.resource == Resource::none) {
     return {};
   }
-  follows_script_ = follows_script_ || follows_script();
   auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
   if (!command_->traits.preempts_all) {  // a stop is executed in every state
-    if (Status wanted_still = is_not_overtaken(); !wanted_still) {
-      return wanted_still;  // also names the cause if there is no lease
+    if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
+      return not_overtaken;  // also names the cause if there is no lease
     }
     if (!lease) {
       return tl::unexpected(lease.error());

@@ -114,8 +114,9 @@ void spin_if_unique(const rcl_cxx::Context::SharedPtr & context,
 }
 
 /// Creates the actions while older processes are being discovered and the robot is being connected, so that
-/// clients discover the actions early. Goals are kept until the node has an executor: a process that must not
-/// start does not answer them. Returns the reason not to start, or nothing after the shutdown.
+/// clients discover them early. Servers on demand, and goals, have to wait until the node has its executors:
+/// a process that must not start answers nothing. Returns the reason not to start, or nothing after the
+/// shutdown.
 std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
                                        const DuplicateChecks & checks, Clock::time_point start)
 {

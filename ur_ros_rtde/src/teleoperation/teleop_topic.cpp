@@ -106,13 +106,14 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
   const double interval = seconds(next.arrived - newest_.arrived);
   const bool first = newest_.number == 0 || interval > options_.timeout;
   next.session = newest_.session + (first ? 1 : 0);
-  next.stops = first ? host_.stops() : newest_.stops;
   next.period = newest_.period;
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
   const bool goes_on = target && newest_.moves && next.moves && publisher == newest_.publisher;
   next.may_start = first ? !goes_on : newest_.may_start || !next.moves;
+  const bool begins = first || next.may_start != newest_.may_start;
+  next.stops = begins ? host_.stops() : newest_.stops;
   next.target = std::move(target);
   return next;
 }

@@ -49,7 +49,7 @@ class TeleopTopic {
     Clock::time_point arrived{};
     std::uint64_t number = 0;
     std::uint64_t session = 0;  ///< number of the session that the message belongs to
-    std::uint32_t stops = 0;    ///< CommandHost::stops() at the beginning of that session
+    std::uint32_t stops = 0;    ///< CommandHost::stops() when that session could begin
     TargetPeriod period{};      ///< between messages
     rcl_cxx::PublisherId publisher{};
     bool moves = false;      ///< commands a motion

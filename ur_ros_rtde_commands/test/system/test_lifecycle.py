@@ -13,7 +13,7 @@ from action_msgs.msg import GoalStatus
 from robot_fixtures import make_ready
 from support import FEW_PLUGINS, HOME, Client, Process, Simulator, find_program, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, MoveJ, Stop
+from ur_ros_rtde_msgs.action import DashboardCommand, DirectTorque, MoveJ, SendScript, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
@@ -249,6 +249,47 @@ def test_with_on_busy_preempt_a_new_goal_preempts_the_running_motion(simulator, 
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.PREEMPTED
     assert "move_j" in result.message
     second.succeeded()
+
+
+# Goals whose stop ends the control program.
+PROGRAM_ENDING = {
+    "direct_torque": (DirectTorque, {"joint_torques": [8.0, 0.0, 0.0, 0.0, 0.0, 0.0], "duration": 5.0, "max_joint_speed": 2.5}),
+    "send_script": (SendScript, {"script": "q = get_actual_joint_positions()\nq[0] = q[0] + 1.5\nmovej(q, a=1, v=0.3)"}),
+}
+
+
+@pytest.fixture
+def preempting(simulator, client, processes):
+    """A driver with on_busy: preempt. Returns a function that starts a goal of PROGRAM_ENDING and waits until it moves the arm."""
+    processes(start_node("driver", simulator.address, "plugins:=[move_j,stop,direct_torque,send_script]", "on_busy:=preempt"))
+    make_ready(client)
+
+    def start(name):
+        action, fields = PROGRAM_ENDING[name]
+        goal = client.send(action, name, **fields)
+        wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.05, 10.0, "a motion")
+        return goal
+
+    return start
+
+
+@pytest.mark.parametrize("name", PROGRAM_ENDING)
+def test_a_goal_preempts_one_whose_stop_ends_the_control_program(client, preempting, name):
+    first = preempting(name)
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6).succeeded()
+    assert first.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+
+
+@pytest.mark.parametrize("name", PROGRAM_ENDING)
+def test_a_goal_that_preempts_the_program_does_not_outlast_a_safeguard_stop(simulator, client, preempting, name):
+    preempting(name)
+    waiting = client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6)
+    assert waiting.accepted
+    simulator.control("safeguard")
+    status, result = waiting.wait_for_result()
+    simulator.control("safeguard", open=False)
+    assert status == GoalStatus.STATUS_ABORTED, result
+    make_ready(client)
 
 
 def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(simulator, client, processes):

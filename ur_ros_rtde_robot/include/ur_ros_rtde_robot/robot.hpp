@@ -81,8 +81,9 @@ class Robot {
   /// way, nobody guides the arm by hand, and no other holder is in the way.
   Expected<Lease> acquire(Claim claim);
   /// The same, after preempting the holders that are in the way. Waits up to `timeout`, or until `stop`, for
-  /// them, for the stop that they lead to, and for the control program after a script. Any other obstacle is
-  /// an error at once: the arm must not move when it has disappeared.
+  /// them, for the stop that they lead to, and for the control program if that stop has ended it. A safety
+  /// stop, or an end of the program that this driver has not brought about, is an error at once: the arm must
+  /// not move when it is over.
   Expected<Lease> acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
                                      const std::stop_token & stop = {});
   /// Success if acquire() would grant the claim to a caller that preempts all holders.
@@ -93,6 +94,8 @@ class Robot {
   Generation generation() const;
   /// Success if `generation` is the current one; otherwise what ended it.
   Status is_current(const Generation & generation) const;
+  /// The same, but an end of the program that this driver has brought about is none.
+  Status is_continued(const Generation & generation) const;
   /// Success while the control program and the connection are those with which the holder of `lease` began,
   /// and the robot can move.
   Status is_valid(const Lease & lease) const;

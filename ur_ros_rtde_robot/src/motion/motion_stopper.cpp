@@ -215,7 +215,9 @@ void MotionStopper::serve(const std::stop_token & stop)
 
 void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
 {
+  constexpr int most_failures = 2;  // of requests that never cease
   std::optional<Expected<StopReport>> result;
+  int failures = 0;
   do {
     options_changed_ = false;
     operation_->joined = false;
@@ -227,7 +229,8 @@ void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
       result = std::move(pass);
     }
     lock.lock();
-  } while (operation_->joined);
+    failures += *result || options_changed_ ? 0 : 1;
+  } while (operation_->joined && failures < most_failures);
   last_ = operation_->stopping;
   operation_->promise.set_value(*result);
   operation_.reset();

@@ -58,6 +58,8 @@ class MotionStopper {
   void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
                std::chrono::milliseconds braking_timeout);
   bool is_stopping() const;
+  /// Number of programs that stops have ended.
+  std::uint32_t ended_programs() const { return ended_programs_; }
   /// Waits until no stop is under way. False after `deadline` or if `stop` is requested.
   bool wait_until_idle(Clock::time_point deadline, const std::stop_token & stop);
 
@@ -144,6 +146,7 @@ class MotionStopper {
   std::optional<Supervision> supervision_;
   unsigned beginning_ = 0;
   bool closed_ = false;
+  std::atomic<std::uint32_t> ended_programs_ = 0;
   std::atomic<bool> options_changed_ = false;  ///< became stronger since the operation is being executed
   bool stops_in_joint_space_ = false;          ///< stopper's thread only
   std::jthread thread_;

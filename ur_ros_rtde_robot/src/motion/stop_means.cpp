@@ -117,8 +117,12 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
   if (!state_.link().connected) {
     return stop_without_rtde();
   }
+  const auto at_rest = [&](StopMeans means) {
+    const auto settled = settle(means, options);
+    return settled || state_.link().connected ? report(settled) : stop_without_rtde();
+  };
   if (is_done(options)) {
-    return report(settle(StopMeans::nothing_moved, options));
+    return at_rest(StopMeans::nothing_moved);
   }
   std::string problems;
   for (const Means & next : means()) {
@@ -128,7 +132,7 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     }
     const Activities started = activities_.now();
     if (stops_by_itself(*sample, started) && wait_for_standstill(program_stop_timeout, options)) {
-      return report(settle(StopMeans::stopped_by_robot, options));
+      return at_rest(StopMeans::stopped_by_robot);
     }
     const Status stopped = (this->*next.attempt)(options);
     if (stopped) {
@@ -177,8 +181,7 @@ Expected<StopMeans> MotionStopper::settle(StopMeans means, const StopOptions & o
   if (const Status ended = end_program(options); !ended) {
     return failure(
         ended.error().code,
-        fmt::format("the program on the robot has not ended and may move the arm again: stop it on the "
-                    "pendant ({})",
+        fmt::format("the program has not ended and may move the arm again: stop it on the pendant ({})",
                     ended.error().message));
   }
   return std::max(means, StopMeans::stopped_by_robot);
@@ -198,10 +201,14 @@ bool MotionStopper::may_go_on(const Sample & sample, Activities started) const
 Status MotionStopper::end_program(const StopOptions & options)
 {
   const Status by_dashboard = stop_by_dashboard(options);
-  if (by_dashboard && wait_for(program_stop_timeout, [](const Sample & sample) {
-        return sample.runtime_state == RuntimeState::stopped;
-      })) {
+  const auto has_ended = [this](const Sample & sample) {
+    return sample.runtime_state == RuntimeState::stopped || !may_go_on(sample, activities_.now());
+  };
+  if (by_dashboard && wait_for(program_stop_timeout, has_ended)) {
     return {};
+  }
+  if (options_changed_ || !state_.link().connected) {
+    return failure(ErrorCode::timeout, "interrupted");  // the caller begins again
   }
   const Status by_watchdog = stop_by_watchdog(options);
   return by_watchdog ? by_watchdog
@@ -268,7 +275,11 @@ Status MotionStopper::stop_by_command(const StopOptions & options)
     // The program ends, and with it everything that it does.
     const Status ended =
         with_control(mode_end_timeout, [](Control & control) { return control.stopScript(); });
-    return ended ? stop_motions({}, options) : ended;
+    if (!ended) {
+      return ended;
+    }
+    ++ended_programs_;
+    return stop_motions({}, options);
   }
   if (Status stopped = stop_motions(started, options); !stopped) {
     return stopped;
@@ -355,6 +366,7 @@ Status MotionStopper::end_modes(Activities started)
 
 Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 {
+  const bool runs = state_.latest().value_or(Sample{}).is_program_running();
   activities_.fence_script();
   Status stopped = stop_program(options_.address);
   // The controller may still be compiling a script.
@@ -368,6 +380,7 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   if (!stopped) {
     return stopped;
   }
+  ended_programs_ += runs ? 1 : 0;
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
@@ -375,6 +388,7 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
+  const bool runs = state_.latest().value_or(Sample{}).is_program_running();
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
@@ -384,9 +398,13 @@ Status MotionStopper::stop_by_watchdog(const StopOptions & options)
   const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [](const Sample & sample) {
     return sample.runtime_state == RuntimeState::stopped;
   });
-  return ended && wait_for_standstill(program_stop_timeout, options)
+  if (!ended) {
+    return failure(ErrorCode::timeout, "the watchdog of the program has not ended it");
+  }
+  ended_programs_ += runs ? 1 : 0;
+  return wait_for_standstill(program_stop_timeout, options)
              ? Status()
-             : failure(ErrorCode::timeout, "the watchdog of the program has not stopped the arm");
+             : failure(ErrorCode::timeout, "the arm moves although the watchdog has ended its program");
 }
 
 double MotionStopper::watchdog_frequency() const

@@ -64,9 +64,8 @@ class CommandGoal : public Goal {
   bool preempts() const;
   Status prepare();
   void begin_stop();
-  bool follows_script() const;
-  /// Since the goal was received, nothing has happened that it must not survive: a stop, or the end of the
-  /// control program.
+  /// Since the goal was received, nothing has happened that it must not survive: a stop, or an end of the
+  /// program that is not a consequence of its preemption.
   Status is_not_overtaken() const;
   Status acquire();
   void hold(Lease lease);
@@ -88,7 +87,6 @@ class CommandGoal : public Goal {
   // When the goal was received:
   std::uint32_t stops_before_ = 0;  ///< CommandHost::stops()
   Generation received_;
-  bool follows_script_ = false;                                       ///< which it preempts
   std::optional<std::shared_future<Expected<StopReport>>> stopping_;  ///< of a stop
   std::string preempted_goal_;
   mutable std::mutex lease_mutex_;  ///< guards what follows

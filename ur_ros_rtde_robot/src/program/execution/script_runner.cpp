@@ -155,6 +155,7 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
   if (const auto yielded = manager_.yield(yield_timeout); !yielded) {
     return rejected(yielded.error());
   }
+  ++ended_programs_;
   const ResumeGuard resume(manager_, monitor);
   // The goal is that of one control program, which has yielded; not that of another one, which was started in
   // between.
@@ -162,6 +163,7 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
     return rejected(program_ended());
   }
   ScriptReport report = monitor_program(holder, program, monitor);
+  ended_programs_ += report.end == ScriptEnd::finished ? 1 : 0;
   if (holder.revoked()) {  // the stop under way must not meet the control program
     stopper_.end(holder, {}).wait();
   }

@@ -23,6 +23,8 @@ class ScriptRunner {
 
   /// `holder`: of Resource::script; may be null for a secondary program.
   ScriptReport run(Permit * holder, const std::string & script, const ScriptOptions & options);
+  /// Number of control programs that have yielded to a script, and of scripts that have come to their end.
+  std::uint32_t ended_programs() const { return ended_programs_; }
 
  private:
   ScriptReport run_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
@@ -38,6 +40,7 @@ class ScriptRunner {
   const std::function<Generation()> generation_;
   /// Makes the markers of scripts unique; starts at random to differ from those of other processes.
   std::atomic<std::uint32_t> next_id_;
+  std::atomic<std::uint32_t> ended_programs_ = 0;
 };
 
 }  // namespace ur_ros_rtde
