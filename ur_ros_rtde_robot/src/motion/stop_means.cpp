@@ -180,7 +180,7 @@ Expected<StopMeans> MotionStopper::settle(StopMeans means, const StopOptions & o
   }
   if (const Status ended = end_program(options); !ended) {
     return failure(
-        ended.error().code,
+        ErrorCode::timeout,
         fmt::format("the program has not ended and may move the arm again: stop it on the pendant ({})",
                     ended.error().message));
   }
