@@ -200,23 +200,20 @@ bool MotionStopper::may_go_on(const Sample & sample, Activities started) const
 
 Status MotionStopper::end_program(const StopOptions & options)
 {
-  const Status by_dashboard = stop_by_dashboard(options);
   const auto has_ended = [this](const Sample & sample) {
     return sample.runtime_state == RuntimeState::stopped || !may_go_on(sample, activities_.now());
   };
-  if (by_dashboard && wait_for(program_stop_timeout, has_ended)) {
-    return {};
+  Status ended = stop_by_dashboard(options);
+  if (ended && !wait_for(program_stop_timeout, has_ended)) {
+    ended = failure(ErrorCode::timeout, "the program was stopped, but has not ended");
   }
-  if (options_changed_ || !state_.link().connected) {
-    return failure(ErrorCode::timeout, "interrupted");  // the caller begins again
+  if (ended || options_changed_ || !state_.link().connected) {
+    return ended;  // interrupted: the caller begins again
   }
   const Status by_watchdog = stop_by_watchdog(options);
   return by_watchdog ? by_watchdog
                      : failure(by_watchdog.error().code,
-                               fmt::format("{}; {}",
-                                           by_dashboard ? "the program was stopped, but has not ended"
-                                                        : by_dashboard.error().message,
-                                           by_watchdog.error().message));
+                               fmt::format("{}; {}", ended.error().message, by_watchdog.error().message));
 }
 
 bool MotionStopper::is_done(const StopOptions & options) const
@@ -273,12 +270,15 @@ Status MotionStopper::stop_by_command(const StopOptions & options)
   }
   if (started.contains(Activity::torque)) {
     // The program ends, and with it everything that it does.
+    const auto program = tracker_.view().program;
     const Status ended =
         with_control(mode_end_timeout, [](Control & control) { return control.stopScript(); });
     if (!ended) {
       return ended;
     }
-    ++ended_programs_;
+    if (Status seen = wait_for_program_end(program); !seen) {
+      return seen;
+    }
     return stop_motions({}, options);
   }
   if (Status stopped = stop_motions(started, options); !stopped) {
@@ -367,6 +367,7 @@ Status MotionStopper::end_modes(Activities started)
 Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 {
   const bool runs = state_.latest().value_or(Sample{}).is_program_running();
+  const auto program = tracker_.view().program;
   activities_.fence_script();
   Status stopped = stop_program(options_.address);
   // The controller may still be compiling a script.
@@ -380,10 +381,24 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   if (!stopped) {
     return stopped;
   }
-  ended_programs_ += runs ? 1 : 0;
+  if (Status seen = runs ? wait_for_program_end(program) : Status(); !seen) {
+    return seen;
+  }
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
+}
+
+Status MotionStopper::wait_for_program_end(std::uint32_t program)
+{
+  const bool ended = wait_for(program_stop_timeout, [&](const Sample & sample) {
+    return tracker_.view().program != program || !sample.is_program_running();
+  });
+  if (!ended) {
+    return failure(ErrorCode::timeout, "the program was stopped, but has not ended");
+  }
+  ++ended_programs_;
+  return {};
 }
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
