@@ -110,7 +110,8 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
-  const bool goes_on = target && newest_.moves && next.moves && publisher == newest_.publisher;
+  const bool was_interrupted = newest_.moves || host_.stops() != newest_.stops;
+  const bool goes_on = target && next.moves && was_interrupted && publisher == newest_.publisher;
   next.may_start = first ? !goes_on : newest_.may_start || !next.moves;
   const bool begins = first || next.may_start != newest_.may_start;
   next.stops = begins ? host_.stops() : newest_.stops;

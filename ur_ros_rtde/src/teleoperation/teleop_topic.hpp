@@ -21,9 +21,9 @@ namespace ur_ros_rtde {
 /// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
-/// of `timeout`. A publisher whose last message before the pause commanded a motion was interrupted: a hung
-/// program that goes on must not move the arm. Its next session starts with a message that commands none
-/// (TargetFollower::moves). The start and the end of each session are logged once.
+/// of `timeout`. A publisher whose last message before the pause commanded a motion, or that was stopped
+/// since, was interrupted: a hung program that goes on must not move the arm. Its next session starts with a
+/// message that commands none (TargetFollower::moves). The start and the end of each session are logged once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
