@@ -111,8 +111,8 @@ class MotionStopper {
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
   Status end_program(const StopOptions & options);
-  /// After a command that ends it. `program`: MotionTracker::View::program before.
-  Status wait_for_program_end(std::uint32_t program);
+  /// After a command that ends it. `program`: MotionTracker::View::program before; `timeout` in s.
+  Status wait_for_program_end(std::uint32_t program, double timeout);
   Status end_call_of_revoked_holder();
   Status stop_by_command(const StopOptions & options);
   Status stop_by_dashboard(const StopOptions & options);

@@ -269,15 +269,12 @@ Status MotionStopper::stop_by_command(const StopOptions & options)
     }
   }
   if (started.contains(Activity::torque)) {
-    // The program ends, and with it everything that it does.
+    // The program ends, and with it everything that it does. It may end without having confirmed the command.
     const auto program = tracker_.view().program;
-    const Status ended =
+    const Status sent =
         with_control(mode_end_timeout, [](Control & control) { return control.stopScript(); });
-    if (!ended) {
-      return ended;
-    }
-    if (Status seen = wait_for_program_end(program); !seen) {
-      return seen;
+    if (Status ended = wait_for_program_end(program, sent ? program_stop_timeout : begin_timeout); !ended) {
+      return sent ? ended : sent;
     }
     return stop_motions({}, options);
   }
@@ -381,7 +378,7 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   if (!stopped) {
     return stopped;
   }
-  if (Status seen = runs ? wait_for_program_end(program) : Status(); !seen) {
+  if (Status seen = runs ? wait_for_program_end(program, program_stop_timeout) : Status(); !seen) {
     return seen;
   }
   return wait_for_standstill(program_stop_timeout, options)
@@ -389,9 +386,9 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
              : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
 }
 
-Status MotionStopper::wait_for_program_end(std::uint32_t program)
+Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout)
 {
-  const bool ended = wait_for(program_stop_timeout, [&](const Sample & sample) {
+  const bool ended = wait_for(timeout, [&](const Sample & sample) {
     return tracker_.view().program != program || !sample.is_program_running();
   });
   if (!ended) {
