@@ -22,10 +22,10 @@ void RobotFixture::make_robot(RobotOptions options)
   robot->start();
 }
 
-void RobotFixture::make_both()
+void RobotFixture::make_both(const RobotOptions & options)
 {
   controller.start();
-  make_robot();
+  make_robot(options);
   ASSERT_TRUE(becomes_ready());
 }
 

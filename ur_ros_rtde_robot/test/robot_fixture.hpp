@@ -24,7 +24,7 @@ struct RobotFixture : testing::Test {
   std::unique_ptr<Robot> robot;  ///< its callbacks use what is above
 
   void make_robot(RobotOptions options = robot_options());
-  void make_both();
+  void make_both(const RobotOptions & options = robot_options());
   /// Waits for the state; the failure message is the log.
   testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
                                     std::chrono::milliseconds timeout = 20s);

@@ -258,12 +258,10 @@ TEST_F(RobotMotionTest, EndsWhenTheControllerDies)
 
 TEST_F(RobotMotionTest, IsStoppedByTheWatchdogOnAHalfOpenConnection)
 {
-  controller.start();
   auto options = robot_options();
   options.silence_limit = 300ms;
   options.watchdog_frequency = 4.0;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   move_joints();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
@@ -277,11 +275,9 @@ TEST_F(RobotMotionTest, IsStoppedByTheWatchdogOnAHalfOpenConnection)
 
 TEST_F(RobotMotionTest, TheEndOfAProgramThatReceivesNothingNamesItsWatchdog)
 {
-  controller.start();
   auto options = robot_options();
   options.watchdog_frequency = 4.0;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}});
   std::string message;
   EXPECT_TRUE(eventually([&] {
@@ -293,11 +289,9 @@ TEST_F(RobotMotionTest, TheEndOfAProgramThatReceivesNothingNamesItsWatchdog)
 
 TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
 {
-  controller.start();
   auto options = robot_options();
   options.watchdog_frequency = 0.0;  // it would end the program first
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   const Generation begin = robot->generation();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"clients", "control"}});
   EXPECT_FALSE(robot->control_for_queries()->setPayload(1.0, {0.0, 0.0, 0.0}));

@@ -106,11 +106,9 @@ TEST_F(RobotProgramTest, TakesProgramThatRunsAfterAFailedStartForItsOwn)
 
 TEST_F(RobotProgramTest, LeavesProgramStoppedWhenRestartingIsOff)
 {
-  controller.start();
   auto options = robot_options();
   options.restart_program = false;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   EXPECT_FALSE(eventually([&] { return robot->status().state == RobotState::ready; }, 700ms));

@@ -6,7 +6,15 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-using StopTest = RobotFixture;
+struct StopTest : RobotFixture {
+  /// Starts a joint motion that occupies the control interface, and waits until it is well under way.
+  std::jthread move_in_a_blocking_call(const std::vector<double> & q)
+  {
+    std::jthread blocked([q, control = control()] { control->moveJ(q, 0.5, 1.0); });
+    EXPECT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
+    return blocked;
+  }
+};
 
 StopOptions decelerating(double joint, double linear)
 {
@@ -129,8 +137,8 @@ TEST_F(StopTest, StopsTheProgramDuringABlockingMotion)
   make_both();
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
-  std::jthread blocked([&, control = control()] { control->moveJ(q, 0.5, 1.0); });
-  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
+  const auto blocked = move_in_a_blocking_call(q);
+  ASSERT_FALSE(HasFailure());
   auto options = decelerating(2.0, 2.0);
   options.timeout = 500ms;
   const auto report = robot->stop_motion(options);
@@ -145,8 +153,8 @@ TEST_F(StopTest, GoesOnToTheNextMeansWhileItIsRequestedAgainAndAgain)
   make_both();
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
-  std::jthread blocked([&, control = control()] { control->moveJ(q, 0.5, 1.0); });
-  ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
+  const auto blocked = move_in_a_blocking_call(q);
+  ASSERT_FALSE(HasFailure());
   std::jthread insisting([&](const std::stop_token & stop) {
     while (!stop.stop_requested()) {
       robot->begin_stop({}, Error{ErrorCode::preempted, "stopped"});
@@ -161,11 +169,9 @@ TEST_F(StopTest, GoesOnToTheNextMeansWhileItIsRequestedAgainAndAgain)
 /// The robot has paused it, and resumes it when the safeguard closes.
 TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
 {
-  controller.start();
   auto options = robot_options();
   options.watchdog_frequency = 0.0;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   move_joints();
   controller.control({{"command", "remote_control"}, {"on", false}});
   controller.control({{"command", "safeguard"}});
@@ -178,11 +184,9 @@ TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
 
 TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)
 {
-  controller.start();
   auto options = robot_options();
   options.watchdog_frequency = 2.0;
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   const std::string dwelling =
       "def dwell():\n"
       "  q = get_actual_joint_positions()\n"
@@ -223,11 +227,9 @@ TEST_F(StopTest, MayBeRequestedBySeveralThreads)
 
 TEST_F(StopTest, UsesTheDashboardServerWithoutRtde)
 {
-  controller.start();
   auto options = robot_options();
   options.watchdog_frequency = 0.0;  // only the stop ends the motion
-  make_robot(options);
-  ASSERT_TRUE(becomes_ready());
+  make_both(options);
   move_joints();
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));

@@ -29,6 +29,20 @@ struct ScriptTest : RobotFixture {
 
   static std::string forever() { return "def other():\n  while True:\n    sync()\n  end\nend\n"; }
 
+  /// Calls `event` once, while the script moves the arm.
+  ScriptOptions when_it_turns(std::function<void()> event)
+  {
+    ScriptOptions options;
+    options.stop_reason = [this, event = std::move(event),
+                           told = std::make_shared<std::atomic<bool>>(false)]() -> std::optional<Error> {
+      if (turns() && !told->exchange(true)) {
+        event();
+      }
+      return std::nullopt;
+    };
+    return options;
+  }
+
   bool plays() { return controller.state().at("program").at("state") == "PLAYING"; }
 
   bool turns() { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }
@@ -156,14 +170,7 @@ TEST_F(ScriptTest, StopsTheArmAtItsTimeLimit)
 TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "stop_program"}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] { controller.control({{"command", "stop_program"}}); });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::stopped);
   EXPECT_EQ(report.error.code, ErrorCode::program_stopped);
@@ -173,15 +180,10 @@ TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
 TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control(
-          {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] {
+    controller.control(
+        {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::stopped);
   EXPECT_NE(report.error.message.find("another program, `other`"), std::string::npos) << report.error.message;
@@ -240,14 +242,8 @@ TEST_F(ScriptTest, IsNotSentAfterAProgramThatBeganInItsPlace)
 TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "protective_stop"}, {"reason", "test"}});
-    }
-    return std::nullopt;
-  };
+  const auto options =
+      when_it_turns([&] { controller.control({{"command", "protective_stop"}, {"reason", "test"}}); });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
   EXPECT_EQ(report.error.code, ErrorCode::protective_stop);
@@ -271,14 +267,7 @@ TEST_F(ScriptTest, EndsInAProtectiveStopWithoutResuming)
 TEST_F(ScriptTest, IsEndedInASafeguardStopSoThatItCannotResume)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "safeguard"}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] { controller.control({{"command", "safeguard"}}); });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
   EXPECT_EQ(report.error.code, ErrorCode::safeguard_stop);
@@ -293,15 +282,10 @@ TEST_F(ScriptTest, IsEndedInASafeguardStopSoThatItCannotResume)
 TEST_F(ScriptTest, IsLeftToItsWatchdogIfItCannotBeEndedInASafeguardStop)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "remote_control"}, {"on", false}});
-      controller.control({{"command", "safeguard"}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] {
+    controller.control({{"command", "remote_control"}, {"on", false}});
+    controller.control({{"command", "safeguard"}});
+  });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
   const double before = robot->latest()->actual_q[0];
@@ -317,14 +301,7 @@ TEST_F(ScriptTest, IsLeftToItsWatchdogIfItCannotBeEndedInASafeguardStop)
 TEST_F(ScriptTest, EndsWithTheLink)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "drop_links"}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] { controller.control({{"command", "drop_links"}}); });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::link_lost);
   EXPECT_EQ(report.error.code, ErrorCode::link_lost);
@@ -336,16 +313,11 @@ TEST_F(ScriptTest, EndsWithTheLink)
 TEST_F(ScriptTest, IsStoppedByItsWatchdogWithoutSignsOfLife)
 {
   make_both();
-  ScriptOptions options;
-  std::atomic<bool> told{false};
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (turns() && !told.exchange(true)) {
-      controller.control({{"command", "stall_links"}, {"which", "rtde"}});
-      EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
-      controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
-    }
-    return std::nullopt;
-  };
+  const auto options = when_it_turns([&] {
+    controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+    EXPECT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "STOPPED"; }));
+    controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+  });
   const auto report = run_script(turning(), options);
   EXPECT_FALSE(report);
   EXPECT_TRUE(becomes_ready());

@@ -21,14 +21,13 @@ ActionAnnouncement::ActionAnnouncement(std::shared_ptr<NodeImpl> node, const Act
       name_(name),
       callbacks_(std::move(callbacks)),
       options_(options),
-      type_support_(*type.type_support())
+      type_support_(type.type_support()->feedback_message_type_support)
 {
   rcl_publisher_options_t publisher_options = rcl_publisher_get_default_options();
   publisher_options.qos = rcl_action_server_get_default_options().feedback_topic_qos;
   const std::string topic = this->node()->resolve(name, false) + "/_action/feedback";
   const auto lock = this->node()->lock_to_create(label());
-  check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(),
-                               type_support_.get()->feedback_message_type_support, topic.c_str(),
+  check_rcl(rcl_publisher_init(&publisher_, this->node()->handle(), type_support_.get(), topic.c_str(),
                                &publisher_options),
             label(), "cannot be announced");
   reset_type_support_error();

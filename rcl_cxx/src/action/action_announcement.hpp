@@ -42,7 +42,7 @@ class ActionAnnouncement : public Waitable {
   const std::string name_;
   const ActionServerCallbacks callbacks_;
   const ActionServerOptions options_;
-  const ActionTypeSupport type_support_;
+  const MessageTypeSupport type_support_;  ///< of the feedback
   rcl_publisher_t publisher_ = rcl_get_zero_initialized_publisher();
   rcl_event_t matched_ = rcl_get_zero_initialized_event();
   bool reports_clients_ = false;

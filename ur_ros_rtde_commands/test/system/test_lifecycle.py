@@ -292,13 +292,20 @@ def test_a_goal_that_preempts_the_program_does_not_outlast_a_safeguard_stop(simu
     make_ready(client)
 
 
-def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(simulator, client, processes):
+@pytest.fixture
+def fast_goal_and_one_that_preempts_it(simulator, client, processes):
+    """The second goal has been accepted, and waits until the arm stands, which takes 1 s."""
     processes(start_node("driver", simulator.address, FEW_PLUGINS, "on_busy:=preempt"))
     make_ready(client)
     first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=10.0)
     wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "the speed from which the arm stops in 1 s")
     waiting = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0)
     assert waiting.accepted
+    return first, waiting
+
+
+def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(simulator, client, fast_goal_and_one_that_preempts_it):
+    first, waiting = fast_goal_and_one_that_preempts_it
     assert client.send(Stop, "stop").wait_for_result()[1].success
     for goal in (first, waiting):
         status, result = goal.wait_for_result()
@@ -313,13 +320,9 @@ def test_a_goal_that_was_received_before_a_stop_does_not_move_the_arm_after_it(s
     (("safeguard", {}), ("safeguard", {"open": False}), ErrorCode.SAFEGUARD_STOP),
     (("stop_program", {}), None, ErrorCode.PROGRAM_STOPPED),
 ])
-def test_a_goal_that_waits_to_preempt_does_not_outlast_the_end_of_the_program(simulator, client, processes, event, end, code):
-    processes(start_node("driver", simulator.address, FEW_PLUGINS, "on_busy:=preempt"))
-    make_ready(client)
-    first = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=10.0)
-    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "the speed from which the arm stops in 1 s")
-    waiting = client.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0)
-    assert waiting.accepted
+def test_a_goal_that_waits_to_preempt_does_not_outlast_the_end_of_the_program(simulator, client, fast_goal_and_one_that_preempts_it,
+                                                                              event, end, code):
+    first, waiting = fast_goal_and_one_that_preempts_it
     simulator.control(event[0], **event[1])
     first.wait_for_result()
     if end:

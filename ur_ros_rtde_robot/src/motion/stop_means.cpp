@@ -363,8 +363,7 @@ Status MotionStopper::end_modes(Activities started)
 
 Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 {
-  const bool runs = state_.latest().value_or(Sample{}).is_program_running();
-  const auto program = tracker_.view().program;
+  const auto before = tracker_.view();
   activities_.fence_script();
   Status stopped = stop_program(options_.address);
   // The controller may still be compiling a script.
@@ -378,8 +377,10 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   if (!stopped) {
     return stopped;
   }
-  if (Status seen = runs ? wait_for_program_end(program, program_stop_timeout) : Status(); !seen) {
-    return seen;
+  if (before.program_running) {
+    if (Status seen = wait_for_program_end(before.program, program_stop_timeout); !seen) {
+      return seen;
+    }
   }
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
@@ -400,7 +401,7 @@ Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
-  const bool runs = state_.latest().value_or(Sample{}).is_program_running();
+  const bool runs = tracker_.view().program_running;
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
