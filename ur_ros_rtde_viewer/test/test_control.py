@@ -1,6 +1,9 @@
 """The control side without a browser: forms of all actions, and no way to a motion without --control."""
 
+import contextlib
 import importlib
+import threading
+from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import pytest
@@ -8,9 +11,11 @@ from running_viewer import RunningViewer, until
 from support import Client
 from ur_ros_rtde_cli import interface_files
 from ur_ros_rtde_cli.fields import FieldError
-from ur_ros_rtde_viewer.control import action_forms
+from ur_ros_rtde_viewer.control import action_forms, form_panel
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
+from ur_ros_rtde_viewer.control.form_panel import FormPanel
 from ur_ros_rtde_viewer.control.goals import Goals, Phase
+from viser import GuiFolderHandle
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, MoveJ, MoveL, MoveLRelative
 
@@ -80,6 +85,28 @@ def test_brackets_are_optional():
     for text in ("0, 1, 2, 3, 4, 5", "[0, 1, 2, 3, 4, 5]"):
         assert list(read(MoveJ, ("joint_positions",), text).joint_positions) == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
     assert list(read(MoveJ, ("joint_positions",), "").joint_positions) == []
+
+
+def test_two_threads_that_change_the_action_leave_one_form(server, monkeypatch):
+    robot = SimpleNamespace(action_types={}, current=lambda source: None)
+    panel = FormPanel(server.gui, server.gui.add_folder("commands"), robot)
+    robot.action_types = {"move_j": "MoveJ", "move_l": "MoveL"}
+    together = threading.Barrier(2)
+
+    def load(name, _kind):
+        with contextlib.suppress(threading.BrokenBarrierError):
+            together.wait(0.5)  # s; both threads come here if they do not wait for each other
+        return {"move_j": MoveJ, "move_l": MoveL}[name]
+
+    monkeypatch.setattr(form_panel.actions, "load", load)
+    threads = [threading.Thread(target=panel.update_actions),
+               threading.Thread(target=lambda: setattr(panel._action, "value", "move_l"))]  # as the user does
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    folders = [child.label for child in panel._container._children.values() if isinstance(child, GuiFolderHandle)]
+    assert folders == ["Goals", panel._action.value] and panel._form.name == panel._action.value
 
 
 def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled():

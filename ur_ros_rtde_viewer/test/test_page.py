@@ -1,6 +1,7 @@
 """The page with --control in a headless Chromium: scene, forms, STOP, jog, target, several tabs, restart of the viewer."""
 
 import csv
+import statistics
 import xml.etree.ElementTree as xml
 
 import numpy as np
@@ -12,17 +13,20 @@ from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses
 from ur_ros_rtde_description.urdf import make_urdf
+from ur_ros_rtde_viewer.control.jog import STOPPED
+from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT
 from ur_ros_rtde_viewer.control.target_panel import GIZMO_SCALE, TargetPanel
 from ur_ros_rtde_viewer.control.target_pose import Motion
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS
 
-from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.action import MoveJ, Stop
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 BROWSER = True
 MEASURES_TIME = True
-PRESSES = 10  # of STOP, until one is fast: a busy host delays some, but not all
-STREAM_TIMEOUT = 0.5  # s; allows for the slow rendering of a browser without a GPU
+PRESSES = 5  # of STOP
+REFUSALS = 10  # messages of a held button
+STREAM_TIMEOUT = 1.0  # s; allows for the slow rendering of a browser without a GPU
 
 
 @pytest.fixture(scope="module")
@@ -192,13 +196,12 @@ def test_stop_decelerates_the_arm_within_100_ms(tab, viewer, robot, simulator, t
         stop()
 
     control.stop = stop_and_note_the_time
-    delays = [np.inf]
-    while min(delays) >= 0.1 and len(delays) <= PRESSES:
-        number = len(delays)
-        delays.append(stop_delay(tab, presses, robot, simulator, tmp_path / f"{number}.csv", home_plus(2.0 * (-1.0) ** number)))
+    delays = [stop_delay(tab, presses, robot, simulator, tmp_path / f"{number}.csv", home_plus(2.0 * (-1.0) ** number))
+              for number in range(PRESSES)]
     control.stop = stop
-    print(f"from the press to the deceleration: {', '.join(f'{1e3 * delay:.0f}' for delay in delays[1:])} ms")
-    assert min(delays) < 0.1
+    print(f"from the press to the deceleration: {', '.join(f'{1e3 * delay:.0f}' for delay in delays)} ms")
+    assert statistics.median(delays) < 0.1  # a busy host delays some
+    assert max(delays) < ACCEPTANCE_TIMEOUT  # a later deceleration may be that of dashboard_server
 
 
 @pytest.mark.parametrize("in_input", [False, True])
@@ -241,6 +244,63 @@ def test_jog_moves_while_a_button_is_held(tab, simulator):
     with tab.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move")
     until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def jog_of(viewer):
+    return viewer[-1].viewer.control._robots[0].jog
+
+
+def test_the_page_knows_the_stream_timeout_of_the_driver(viewer):
+    until(lambda: jog_of(viewer)._hold.stream_timeout == STREAM_TIMEOUT, "the parameter of the driver")
+
+
+@pytest.fixture
+def refusals(viewer, monkeypatch):
+    """The reasons why messages of a jog button do not move the arm, in their order."""
+    jog = jog_of(viewer)
+    hold, reasons = jog.hold, []
+
+    def hold_and_note(*arguments):
+        reason = hold(*arguments)
+        reasons.extend([reason] if reason else [])
+        return reason
+
+    monkeypatch.setattr(jog, "hold", hold_and_note)
+    return reasons
+
+
+PAUSE_OF_THE_BROWSER = "end => { for (end += performance.now(); performance.now() < end;); }"
+
+
+@pytest.mark.parametrize("of_the_page", [True, False])
+def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, robot, simulator, refusals, of_the_page):
+    tab.open("Jog")
+    with tab.held("Z +"):
+        until(lambda: is_moving(simulator), "the arm to move")
+        tab.page.keyboard.press("Escape") if of_the_page else robot.send(Stop, "stop").succeeded()
+        until(lambda: not is_moving(simulator), "the arm to stop")
+        position = simulator.state()["actual"]["position"]
+        tab.page.evaluate(PAUSE_OF_THE_BROWSER, 2e3 * STREAM_TIMEOUT)
+        tab.wait_for_text(STOPPED)
+        number = len(refusals) + REFUSALS
+        until(lambda: len(refusals) >= number, "further messages of the button")
+        assert set(refusals) == {STOPPED} and simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-4)
+    with tab.held("Z +"):
+        until(lambda: is_moving(simulator), "the arm to move after the release of the button")
+    until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_a_touch_that_the_browser_cancels_releases_the_button(tab, simulator):
+    tab.open("Jog")
+    box = tab.button("Z +").bounding_box()
+    touch = {"x": box["x"] + 0.5 * box["width"], "y": box["y"] + 0.5 * box["height"]}
+    session = tab.page.context.new_cdp_session(tab.page)
+    for _ in range(2):
+        session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [touch]})
+        until(lambda: is_moving(simulator), "the arm to move")
+        session.send("Input.dispatchTouchEvent", {"type": "touchCancel", "touchPoints": []})
+        until(lambda: not is_moving(simulator), "the arm to stop")
+    session.detach()
 
 
 def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):

@@ -1,6 +1,7 @@
 """The form of an action in the page of one browser tab, and the goals that were sent with it."""
 
-from typing import Any, Dict, List, Optional
+import threading
+from typing import Any, Callable, Dict, List, Optional
 
 from ur_ros_rtde_cli import actions
 from ur_ros_rtde_cli.errors import CliError
@@ -16,10 +17,11 @@ FIRST_ACTION = "move_j"
 
 
 class FormPanel:
-    """`container` is the tab of the page in which the form is shown."""
+    """`container` is the tab of the page in which the form is shown. Methods can be called in any thread."""
 
     def __init__(self, gui: Any, container: Any, robot: RobotControl):
         self._gui, self._container, self._robot = gui, container, robot
+        self._lock = threading.RLock()  # a new value of the dropdown calls _show() in the thread that sets it
         self._form: Optional[Form] = None
         self._folder: Any = None
         self._inputs: Dict[Path, Any] = {}
@@ -30,26 +32,37 @@ class FormPanel:
             self._position_button = gui.add_button("Use the current position", color="gray", visible=False)
             self._error = gui.add_markdown("")
             self._goals_folder = gui.add_folder("Goals", visible=False)
-        self._action.on_update(lambda _event: self._show())
-        self._send_button.on_click(lambda _event: self._send())
-        self._position_button.on_click(lambda _event: self._use_current_position())
+        self._action.on_update(self._locked(self._show))
+        self._send_button.on_click(self._locked(self._send))
+        self._position_button.on_click(self._locked(self._use_current_position))
         self.update_actions()
+
+    def _locked(self, function: Callable[[], None]) -> Callable[[Any], None]:
+        """Returns a callback of the page."""
+
+        def call(_event: Any) -> None:
+            with self._lock:
+                function()
+
+        return call
 
     def update_actions(self) -> None:
         """Offers the actions that the driver serves. A form that is open stays open as long as its action is served."""
-        names = tuple(sorted(self._robot.action_types)) or (NO_ACTION,)
-        if names == self._action.options:
-            return
-        selected = self._action.value
-        self._action.options = names
-        if selected not in names:
-            selected = FIRST_ACTION if FIRST_ACTION in names else names[0]
-        self._action.value = selected
-        self._show()
+        with self._lock:
+            names = tuple(sorted(self._robot.action_types)) or (NO_ACTION,)
+            if names == self._action.options:
+                return
+            selected = self._action.value
+            self._action.options = names
+            if selected not in names:
+                selected = FIRST_ACTION if FIRST_ACTION in names else names[0]
+            self._action.value = selected
+            self._show()
 
     def close(self) -> None:
-        for goal in self._goals:
-            goal.close()
+        with self._lock:
+            for goal in self._goals:
+                goal.close()
 
     def _show(self) -> None:
         """Builds the form of the selected action."""

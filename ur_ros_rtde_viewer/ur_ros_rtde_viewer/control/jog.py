@@ -1,7 +1,7 @@
 """Moves the TCP while a button is held, over the driver's topic `twist`.
 
 The browser sends a message HOLD_RATE times per second while a button is held, and each message becomes one message on `twist`. The
-driver stops the arm if none arrives for its parameter `stream_timeout` (0.1 s): when the button is released, the tab is closed, the
+driver stops the arm if none arrives for its parameter `stream_timeout`: when the button is released, the tab is closed, the
 connection is lost, or this process ends.
 """
 
@@ -18,12 +18,13 @@ from .control_node import ControlNode
 from .goals import Goals
 
 HOLD_RATE = 30.0  # Hz
-LONGEST_GAP = 0.25  # s without a message, after which a hold has ended
-LONGEST_PAUSE = 0.1  # s without a message, after which the driver may wait for a zero twist: the default of its `stream_timeout`
+STREAM_TIMEOUT = 0.1  # s without a message, after which the driver ends the motion: the default of its parameter
+FIRST_GAP = 0.25  # s, the longest one before the motion begins
 # Messages that were delayed on their way arrive together. They are not signs of a held button.
 SHORTEST_GAP = 0.25 / HOLD_RATE  # s
 MAX_LINEAR, MAX_ANGULAR = 0.25, 1.0  # m/s, rad/s
 AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
+STOPPED = "stopped: release the button, then hold it again"
 
 
 class Frame(Enum):
@@ -43,6 +44,7 @@ class Meaning(Enum):
     NOTHING = "nothing"
     START = "start"  # a zero twist: after a pause during a motion, the driver waits for one
     MOVE = "move"
+    END = "end"  # the messages have paused: in the meantime, something else may have stopped the arm
 
 
 class Hold:
@@ -52,29 +54,41 @@ class Hold:
         self._clock = clock
         self._last = -float("inf")
         self._moves = False
+        self.stream_timeout = STREAM_TIMEOUT  # of the driver
 
     @property
     def is_active(self) -> bool:
-        return self._clock() - self._last < LONGEST_GAP
+        return self._clock() - self._last < self._longest_gap
+
+    @property
+    def _longest_gap(self) -> float:
+        return self.stream_timeout if self._moves else max(FIRST_GAP, self.stream_timeout)
+
+    def begin(self) -> Meaning:
+        self._last, self._moves = self._clock(), False
+        return Meaning.START
 
     def end(self) -> None:
         self._last = -float("inf")
 
     def take(self) -> Meaning:
+        """Returns the meaning of a message after the first one."""
         now = self._clock()
         gap, self._last = now - self._last, now
         if gap < SHORTEST_GAP:
             return Meaning.NOTHING
-        self._moves = gap < (LONGEST_PAUSE if self._moves else LONGEST_GAP)
-        return Meaning.MOVE if self._moves else Meaning.START
+        if gap >= self._longest_gap:
+            return Meaning.END
+        self._moves = True
+        return Meaning.MOVE
 
 
 class Jog:
     """Only one tab moves the arm at a time. Methods can be called in any thread.
 
-    STOP ends the hold of every tab until its button is released or the tab is closed. A gap between messages is not a release: a tab
-    in the background and a bad network cause gaps, too. The lock is held while a twist is published, so that none
-    follows a STOP.
+    A hold begins with the first message of a tab since its button was released. STOP and a pause of the messages end it until the button
+    is released or the tab is closed: during the pause, something else may have stopped the arm. A pause is not a release: a tab in the
+    background and a bad network cause pauses, too. The lock is held while a twist is published, so that none follows a STOP.
     """
 
     def __init__(self, control: ControlNode, goals: Goals, clock: Callable[[], float] = time.monotonic):
@@ -85,20 +99,28 @@ class Jog:
         self._hold = Hold(clock)
         self._owner: Optional[Hashable] = None  # tab of the hold
         self._held: Set[Hashable] = set()  # tabs that have not released their button
-        self._stopped: Set[Hashable] = set()  # those of them whose hold STOP has ended
+
+    def set_stream_timeout(self, seconds: float) -> None:
+        with self._lock:
+            self._hold.stream_timeout = seconds
 
     def hold(self, tab: Hashable, axis: int, sign: float, frame: Frame, speed: JogSpeed) -> Optional[str]:
         """Handles a message of a held button of `tab`. Returns why the arm does not move, or None."""
         with self._lock:
+            is_first = tab not in self._held
             self._held.add(tab)
-            if tab in self._stopped:
-                return "stopped: release the button, then hold it again"
-            if self._hold.is_active and self._owner != tab:
-                return "the arm is being moved from another tab"
-            self._owner = tab
-            meaning = self._hold.take()
             if self._publisher.get_subscription_count() == 0:
+                self._end_hold()
                 return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
+            if self._owner != tab and self._hold.is_active:
+                return "the arm is being moved from another tab"
+            if is_first:
+                self._owner, meaning = tab, self._hold.begin()
+            else:
+                meaning = self._hold.take() if self._owner == tab else Meaning.END
+            if meaning is Meaning.END:
+                self._end_hold()
+                return STOPPED
             if meaning is Meaning.START:
                 self._publish(frame, axis, 0.0)
             elif meaning is Meaning.MOVE:
@@ -109,16 +131,15 @@ class Jog:
         """Ends the hold of `tab` at once: the driver would notice it only after `stream_timeout`."""
         with self._lock:
             self._held.discard(tab)
-            self._stopped.discard(tab)
-            if self._owner != tab or not self._hold.is_active:
+            if self._owner != tab:
                 return
+            if self._hold.is_active:
+                self._publish(Frame.BASE, 0, 0.0)
             self._end_hold()
-            self._publish(Frame.BASE, 0, 0.0)
 
     def stop(self) -> None:
         """Ignores each button that is held until it is released."""
         with self._lock:
-            self._stopped |= self._held
             self._end_hold()
 
     def _end_hold(self) -> None:

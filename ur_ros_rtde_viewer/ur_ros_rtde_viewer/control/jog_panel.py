@@ -8,6 +8,11 @@ from .robot_control import RobotControl
 
 COLORS = ("pink", "green", "blue")  # of x, y and z, as in the scene; STOP is red
 FRAMES = {"base": Frame.BASE, "tool": Frame.TOOL}
+# The release of a button is its click. A touch that is long, or that the browser cancels, ends without one.
+CLICK_AFTER_TOUCH = """<img src="data:," alt="" style="display: none" onerror="if (!window.clickAfterTouch) {
+  window.clickAfterTouch = true;
+  document.addEventListener('lostpointercapture', event => event.target.closest?.('div:has(> .two-columns) ~ div > button')?.click());
+}">"""
 
 
 class JogPanel:
@@ -20,7 +25,7 @@ class JogPanel:
             self._linear = gui.add_slider("Speed [m/s]", 0.01, MAX_LINEAR, 0.01, default.linear)
             self._angular = gui.add_slider("Rotation [rad/s]", 0.05, MAX_ANGULAR, 0.05, default.angular)
             self._text = gui.add_markdown("")
-            gui.add_html(style.TWO_COLUMNS)
+            gui.add_html(style.TWO_COLUMNS + CLICK_AFTER_TOUCH)
             for axis in range(len(AXES)):
                 for sign in (1.0, -1.0):
                     self._add_button(axis, sign)

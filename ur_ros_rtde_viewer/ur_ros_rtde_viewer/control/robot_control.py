@@ -4,6 +4,7 @@ import time
 from typing import Any, Callable, Dict, Optional
 
 import numpy as np
+from rcl_interfaces.srv import GetParameters
 
 from ..state.robot_state import RobotState
 from . import action_forms
@@ -40,6 +41,11 @@ class RobotControl:
         if found != self.action_types:
             self.action_types = found
             self._on_actions()
+            self.view.services.call(GetParameters, "command_server/get_parameters", self._on_parameters, names=["stream_timeout"])
+
+    def _on_parameters(self, response: Optional[Any], _reason: str) -> None:
+        if response is not None:
+            self.jog.set_stream_timeout(response.values[0].double_value)
 
     def close(self) -> None:
         self.goals.end()
