@@ -1,7 +1,10 @@
 // Extensions that the controller rejects, with the log messages and the errors of their goals; failing
-// extensions.
+// extensions; what is left of an extension that has ended.
+#include <atomic>
 #include <stdexcept>
+#include <thread>
 
+#include "connection/rtde/control_scripts.hpp"
 #include "robot_fixture.hpp"
 #include "ur_ros_rtde_robot/script/script_extension.hpp"
 
@@ -9,14 +12,20 @@ namespace ur_ros_rtde::test {
 namespace {
 
 struct ExtensionsTest : RobotFixture {
+  static ScriptExtension extension(const std::string & name, const std::string & snippet)
+  {
+    ScriptExtension result;
+    result.name = name;
+    result.snippet = snippet;
+    return result;
+  }
+
   static ScriptExtension of_urcap(const std::string & name, const std::string & snippet)
   {
-    ScriptExtension extension;
-    extension.name = name;
-    extension.snippet = snippet;
-    extension.urcap = "the Feeder URCap";
-    extension.urcap_functions = {"feeder_open", "feeder_close"};
-    return extension;
+    ScriptExtension result = extension(name, snippet);
+    result.urcap = "the Feeder URCap";
+    result.urcap_functions = {"feeder_open", "feeder_close"};
+    return result;
   }
 
   void start_with(const std::vector<ScriptExtension> & extensions)
@@ -27,6 +36,9 @@ struct ExtensionsTest : RobotFixture {
     robot->start();
     ASSERT_TRUE(becomes_ready());
   }
+
+  /// "freedrive" or "force_mode"
+  bool is_on(const char * mode) { return controller.state().at(mode).get<bool>(); }
 };
 
 TEST_F(ExtensionsTest, AMissingUrcapIsOneLineOfInformationForAllCommandsThatNeedIt)
@@ -107,6 +119,114 @@ TEST_F(ExtensionsTest, AreStoppedEvenIfTheMessageIsLost)
   EXPECT_TRUE(run_extension("wait")) << log.text();
 }
 
+/// A stop takes the next means if another thread holds the IO interface.
+TEST_F(ExtensionsTest, AreStoppedWhileAnotherThreadHoldsTheIoInterface)
+{
+  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
+  double begin = 0.0;
+  std::atomic<bool> holds{false};
+  std::atomic<bool> release{false};
+  std::jthread holder;
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (robot->latest()->actual_qd[0] < 0.28) {
+      return std::nullopt;
+    }
+    holder = std::jthread([&] {
+      const auto held = robot->io().hold();
+      holds = true;
+      eventually([&] { return release.load(); }, 2s);
+    });
+    EXPECT_TRUE(eventually([&] { return holds.load(); }));
+    begin = robot->latest()->controller_time;
+    return Error{ErrorCode::canceled, "canceled"};
+  };
+  const Status ended = run_extension("turn", options);
+  const double duration = robot->latest()->controller_time - begin;
+  release = true;
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().message, "canceled");
+  EXPECT_TRUE(at_rest());
+  EXPECT_LT(duration, 1.0);
+}
+
+/// The controller keeps the trigger of a lost connection; the next connection clears it.
+TEST_F(ExtensionsTest, FailWhenTheirConnectionIsLost)
+{
+  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
+  double begin = 0.0;
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (begin == 0.0 && robot->latest()->actual_qd[0] > 0.28) {
+      controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
+      begin = robot->latest()->controller_time;
+    }
+    return std::nullopt;
+  };
+  const Status ended = run_extension("turn", options);
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, ErrorCode::link_lost) << ended.error().message;
+  EXPECT_LT(robot->latest()->controller_time - begin, 1.0);
+  EXPECT_TRUE(at_rest());
+}
+
+TEST_F(ExtensionsTest, EndWithTheReasonOfAStopThatTheirCallerDoesNotNotice)
+{
+  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
+  std::jthread stop([&] {
+    ASSERT_TRUE(eventually([&] { return robot->latest()->actual_qd[0] > 0.28; }));
+    EXPECT_TRUE(robot->stop_motion());
+  });
+  const Status ended = run_extension("turn");
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().message, stopped_by_the_driver().message);
+}
+
+/// Freedrive does not belong to the thread of the snippet, and ignores a stop of the motion.
+TEST_F(ExtensionsTest, FreedriveEndsWithACanceledOne)
+{
+  start_with({extension("guide", "freedrive_mode()\nwhile True:\n  sync()\nend\n")});
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    return is_on("freedrive") ? std::optional(Error{ErrorCode::canceled, "canceled"}) : std::nullopt;
+  };
+  const Status ended = run_extension("guide", options);
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, ErrorCode::canceled) << ended.error().message;
+  EXPECT_FALSE(is_on("freedrive"));
+  EXPECT_TRUE(at_rest());
+}
+
+TEST_F(ExtensionsTest, ModesEndWithOneThatHasFinished)
+{
+  start_with({extension("press",
+                        "force_mode(p[0, 0, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 0], 2, "
+                        "[0.1, 0.1, 0.05, 0.1, 0.1, 0.1])\n"),
+              extension("teach", "teach_mode()\n")});
+  for (const char * name : {"press", "teach"}) {
+    EXPECT_TRUE(run_extension(name)) << log.text();
+    EXPECT_FALSE(is_on("force_mode"));
+    EXPECT_FALSE(is_on("freedrive"));
+  }
+}
+
+TEST(ExtensionVersionTest, EarlyControllersDoNotKnowTheEndOfFreedrive)
+{
+  ScriptExtension wait;
+  wait.name = "wait";
+  wait.snippet = "sync()\n";
+  ControlScripts scripts(false);
+  ASSERT_TRUE(scripts.set({wait}).empty());
+  const auto knows = [&](unsigned major, unsigned minor) {
+    const std::string text = scripts.text({.major = major, .minor = minor});
+    EXPECT_NE(text.find("end_teach_mode()\n    end\n"), std::string::npos) << "the end of an extension";
+    return text.find("end_freedrive_mode()") != std::string::npos;
+  };
+  EXPECT_FALSE(knows(3, 15));
+  EXPECT_FALSE(knows(5, 9));
+  EXPECT_TRUE(knows(5, 10));
+}
+
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
 {
   robot = std::make_unique<Robot>(robot_options(), log.function());
@@ -116,6 +236,29 @@ TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
     EXPECT_EQ(robot->set_input_register(number, std::int32_t{1}).error().code, expected) << number;
     EXPECT_EQ(robot->set_input_register(number, 1.0).error().code, expected) << number;
   }
+}
+
+struct ContactDetectionTest : RobotFixture {
+  int threads() { return controller.state().at("program").at("threads").get<int>(); }
+};
+
+TEST_F(ContactDetectionTest, NeedsALease)
+{
+  make_both();
+  EXPECT_THROW(robot->control_for_queries()->startContactDetection(), std::logic_error);
+  EXPECT_TRUE(control()->startContactDetection());
+}
+
+/// A contact after the stop would move the arm.
+TEST_F(ContactDetectionTest, EndsWithAStop)
+{
+  make_both();
+  const int before = threads();
+  move_linear();
+  ASSERT_TRUE(control()->startContactDetection());
+  ASSERT_TRUE(eventually([&] { return threads() == before + 2; })) << threads();
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_TRUE(eventually([&] { return threads() == before; })) << threads();
 }
 
 }  // namespace

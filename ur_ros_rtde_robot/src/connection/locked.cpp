@@ -47,9 +47,10 @@ HeldLock held(InterfaceLock * lock)
   return {lock, [](InterfaceLock * locked) { locked->unlock(); }};
 }
 
-HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout)
+HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout,
+                 InterfaceLock::Place place)
 {
-  if (!lock.try_lock_for(timeout)) {
+  if (!lock.try_lock_for(timeout, place)) {
     throw RobotError(
         {ErrorCode::busy,
          fmt::format("another call of the {} has been running for {} ms: try again when it has ended, or "

@@ -19,13 +19,23 @@ constexpr std::string_view before_loop = "            cmd = rtde_cmd()\n";
 /// is minus the number while the extension runs, the number when it has finished, and 0 when the script is
 /// ready for the next one. If the number is cleared before the extension has finished, 0 also means that the
 /// arm has stopped. A number that is in the register when the script begins is ignored until it is cleared.
+/// The modes that an extension switches on end with it. After one that has finished, there is no stopj: a
+/// command may move the arm, and two threads that do end the program.
 constexpr std::string_view dispatcher = R"(
     global extension_id = 0
     global extension_state = 5 # 0 none, 1 under way, 2 done, 3 being stopped, 4 stopped, 5 before the first
     global extension_thrd = 0
 
+    def end_modes_of_extension():
+        if is_in_forcemode == 0: # otherwise, a command has started it
+            end_force_mode()
+        end
+$5.10   end_freedrive_mode()
+        end_teach_mode()
+    end
+
     thread extension_stop_thread():
-        end_force_mode()
+        end_modes_of_extension() # freedrive first: it ignores stopj
         stopj(4)
         extension_state = 4
     end
@@ -237,8 +247,9 @@ class Composer {
                             choice.empty() ? "if" : "elif", part.id, part.id);
     }
     result_.text.insert(dispatcher);
-    result_.text.insert("    thread extension_thread():\n" + choice +
-                        "        end\n        extension_state = 2\n    end\n");
+    result_.text.insert(
+        "    thread extension_thread():\n" + choice +
+        "        end\n        end_modes_of_extension()\n        extension_state = 2\n    end\n");
   }
 
   std::vector<Part> parts_;

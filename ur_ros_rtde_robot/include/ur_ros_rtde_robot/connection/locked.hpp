@@ -37,7 +37,8 @@ using HeldLock = std::unique_ptr<InterfaceLock, void (*)(InterfaceLock *)>;
 HeldLock held(InterfaceLock * lock);
 
 /// Locks `lock`; throws RobotError (busy), which names `what`, if that takes longer than `timeout`.
-HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout);
+HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout,
+                 InterfaceLock::Place place = InterfaceLock::Place::last);
 
 /// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
 /// holds the interface's lock for one call (execute-around pointer): `robot.control(lease)->moveL(pose,
@@ -55,7 +56,7 @@ class Locked {
   class Call {
    public:
     Call(const Locked & locked)
-        : object_(locked.object_), held_(acquire(*locked.lock_, locked.what_, locked.timeout_))
+        : object_(locked.object_), held_(acquire(*locked.lock_, locked.what_, locked.timeout_, locked.place_))
     {
       if (locked.permission_) {
         auto permitted = locked.permission_();
@@ -88,6 +89,16 @@ class Locked {
     return result;
   }
 
+  /// The same interface for a caller that goes before all who wait, and waits for the call under way at most
+  /// for `timeout`.
+  Locked before_others(std::chrono::milliseconds timeout) const
+  {
+    Locked result = *this;
+    result.timeout_ = timeout;
+    result.place_ = InterfaceLock::Place::first;
+    return result;
+  }
+
   Call operator->() const { return Call(*this); }
   /// Holds the lock for the lifetime of the returned value, for several calls that belong together. Do not
   /// wait while holding it.
@@ -98,6 +109,7 @@ class Locked {
   std::shared_ptr<InterfaceLock> lock_;
   const char * what_;
   std::chrono::milliseconds timeout_;
+  InterfaceLock::Place place_ = InterfaceLock::Place::last;
   Permission permission_;
 };
 

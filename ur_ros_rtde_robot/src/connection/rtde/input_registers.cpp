@@ -7,6 +7,13 @@
 #include "ur_ros_rtde_robot/script/extension_registers.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+
+/// Like the one of a stop for the control interface.
+constexpr std::chrono::milliseconds clear_timeout(12);
+
+}  // namespace
+
 Status InputRegisters::check(int index)
 {
   if (script::free_inputs.contains(index)) {
@@ -16,13 +23,11 @@ Status InputRegisters::check(int index)
                                                       script::to_string(script::free_inputs)));
 }
 
-Status InputRegisters::write(const std::string & what,
-                             const std::function<bool(ur_rtde::RTDEIOInterface &)> & write_to,
-                             const Permission & permission) const
+Status InputRegisters::write(const std::string & what, const std::optional<Io> & io,
+                             const std::function<bool(ur_rtde::RTDEIOInterface &)> & write_to)
 {
   try {
-    const auto io = interfaces_.io();
-    if (io && write_to(*io->permitted_by(permission).hold())) {
+    if (io && write_to(*io->hold())) {
       return {};
     }
     return failure(ErrorCode::link_lost, fmt::format("{} was not sent", what));
@@ -38,7 +43,7 @@ Status InputRegisters::set(int index, std::int32_t value) const
   if (auto valid = check(index); !valid) {
     return valid;
   }
-  return write(fmt::format("input integer register {}", index),
+  return write(fmt::format("input integer register {}", index), interfaces_.io(),
                [&](ur_rtde::RTDEIOInterface & io) { return io.setInputIntRegister(index + offset_, value); });
 }
 
@@ -47,23 +52,32 @@ Status InputRegisters::set(int index, double value) const
   if (auto valid = check(index); !valid) {
     return valid;
   }
-  return write(fmt::format("input float register {}", index), [&](ur_rtde::RTDEIOInterface & io) {
-    return io.setInputDoubleRegister(index + offset_, value);
-  });
+  return write(
+      fmt::format("input float register {}", index), interfaces_.io(),
+      [&](ur_rtde::RTDEIOInterface & io) { return io.setInputDoubleRegister(index + offset_, value); });
 }
 
 Status InputRegisters::set_trigger(int id, const Permission & permission)
+{
+  const auto io = interfaces_.io();
+  return write_trigger(id, io ? std::optional(io->permitted_by(permission)) : std::nullopt);
+}
+
+Status InputRegisters::clear_trigger()
+{
+  const auto io = interfaces_.io();
+  return write_trigger(0, io ? std::optional(io->before_others(clear_timeout)) : std::nullopt);
+}
+
+Status InputRegisters::write_trigger(int id, const std::optional<Io> & io)
 {
   const Trigger trigger{id, interfaces_.starts()};
   if (id != 0) {
     trigger_ = trigger;  // even if it turns out that it was not sent
   }
-  Status sent = write(
-      "the trigger of the extension",
-      [&](ur_rtde::RTDEIOInterface & io) {
-        return io.setInputDoubleRegister(script::trigger_register + offset_, id);
-      },
-      permission);
+  Status sent = write("the trigger of the extension", io, [&](ur_rtde::RTDEIOInterface & locked) {
+    return locked.setInputDoubleRegister(script::trigger_register + offset_, id);
+  });
   if (sent) {
     trigger_ = trigger;
   }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "connection/rtde/rtde_interfaces.hpp"
@@ -21,12 +22,14 @@ class InputRegisters {
   /// A parameter of an extension: register 19 to 22.
   Status set(int index, std::int32_t value) const;
   Status set(int index, double value) const;
-  using Permission = Locked<ur_rtde::RTDEIOInterface>::Permission;
+  using Io = Locked<ur_rtde::RTDEIOInterface>;
+  using Permission = Io::Permission;
   /// Starts the extension with this number, if `permission` succeeds when nothing can come in between any
   /// more.
   Status set_trigger(int id, const Permission & permission);
-  /// Ends an extension that runs: its thread is killed, and the arm decelerates.
-  Status clear_trigger() { return set_trigger(0, {}); }
+  /// Ends an extension that runs: its thread is killed, and the arm decelerates. For a stop: fails instead of
+  /// waiting for a thread that holds the IO interface.
+  Status clear_trigger();
   /// An extension was started in the current control program, and the trigger has not been cleared.
   bool extension_started() const;
 
@@ -38,8 +41,9 @@ class InputRegisters {
 
   static Status check(int index);
   /// Calls `write_to` with the locked IO interface. `what` names the value in the error.
-  Status write(const std::string & what, const std::function<bool(ur_rtde::RTDEIOInterface &)> & write_to,
-               const Permission & permission = {}) const;
+  static Status write(const std::string & what, const std::optional<Io> & io,
+                      const std::function<bool(ur_rtde::RTDEIOInterface &)> & write_to);
+  Status write_trigger(int id, const std::optional<Io> & io);
 
   const int offset_;
   const RtdeInterfaces & interfaces_;

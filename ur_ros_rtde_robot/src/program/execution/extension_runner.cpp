@@ -27,6 +27,8 @@ struct ExtensionRunner::Run {
   // Of MotionTracker::View at the begin.
   std::uint32_t program;
   std::uint32_t link;
+  InputRegisters::Permission permission;
+  bool begun = false;
   Clock::time_point begin = Clock::now();
 };
 
@@ -58,6 +60,18 @@ Status ExtensionRunner::failure_of(Run & run) const
                  fmt::format("the control program was stopped while the extension {} ran", run.name));
 }
 
+/// Something else than this runner has cleared the trigger: a stop, or the IO interface when it was connected
+/// again.
+Status ExtensionRunner::trigger_lost(const Run & run) const
+{
+  if (const auto permitted = run.permission(); !permitted) {
+    return tl::unexpected(permitted.error());
+  }
+  return failure(
+      ErrorCode::link_lost,
+      fmt::format("the IO connection was lost, which ended the extension {}: send the goal again", run.name));
+}
+
 std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions & options) const
 {
   const auto link = state_.link();
@@ -75,13 +89,18 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
   if (view.program != run.program || !view.program_running) {
     return failure_of(run);
   }
-  if (sample->extension_acknowledgement() == run.id) {
+  const double acknowledgement = sample->extension_acknowledgement();
+  if (acknowledgement == run.id) {
     return Status();
   }
+  run.begun = run.begun || acknowledgement == -run.id;
   if (options.stop_reason) {
     if (const auto reason = options.stop_reason()) {
       return Status(tl::unexpected(*reason));
     }
+  }
+  if (run.begun && acknowledgement == 0.0) {
+    return trigger_lost(run);
   }
   if (Clock::now() - run.begin > options.timeout) {
     return failure(ErrorCode::timeout, fmt::format("the extension {} has not ended after {:.1f} s", run.name,
@@ -113,7 +132,7 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
     return tl::unexpected(id.error());
   }
   // A trigger that was not cleared when the previous extension ended would prevent this one.
-  if (Status cleared = registers_.clear_trigger(); !cleared) {
+  if (Status cleared = registers_.set_trigger(0, {}); !cleared) {
     return cleared;
   }
   if (!wait_for_acknowledgement(0.0)) {
@@ -124,14 +143,14 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
     return tl::unexpected(primary.error());
   }
   const auto view = tracker_.view();
-  Run run{name, *id, std::move(*primary), view.program, view.link};
+  Run run{name, *id, std::move(*primary), view.program, view.link, permission};
   if (Status triggered = registers_.set_trigger(run.id, permission); !triggered) {
     return triggered;
   }
   if (Status ended = wait_for_result(run, options); !ended) {
     return ended;
   }
-  if (Status cleared = registers_.clear_trigger(); !cleared) {
+  if (Status cleared = registers_.set_trigger(0, {}); !cleared) {
     return cleared;
   }
   if (!wait_for_acknowledgement(0.0)) {

@@ -37,6 +37,7 @@ class ExtensionRunner {
   /// None while the extension is running.
   std::optional<Status> result(Run & run, const ExtensionOptions & options) const;
   Status failure_of(Run & run) const;
+  Status trigger_lost(const Run & run) const;
 
   const RobotOptions options_;
   const StateReceiver & state_;
