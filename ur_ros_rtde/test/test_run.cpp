@@ -35,6 +35,16 @@ TEST_F(RunTest, ATimeoutMayBeInThePast)
   EXPECT_EQ(why->code, ErrorCode::timeout);
 }
 
+TEST_F(RunTest, BrakesNothingWithoutTheArm)
+{
+  EXPECT_FALSE(run.may_brake());
+  EXPECT_THROW(run.brake_by_itself(), RobotError);
+  Lease not_granted;
+  const ur_ros_rtde::Run without_lease{RunContext{robot, stop_request, &not_granted}};
+  EXPECT_FALSE(without_lease.may_brake());
+  EXPECT_THROW(without_lease.brake_by_itself(), RobotError);
+}
+
 TEST_F(RunTest, TheTimeoutOfAnExtensionIsChecked)
 {
   using Limits = std::numeric_limits<double>;

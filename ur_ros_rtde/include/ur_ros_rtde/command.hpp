@@ -126,7 +126,7 @@ void Command<A>::start_action_server(CommandHost & host, const std::string & nam
 {
   description_ = std::make_shared<const CommandDescription>(CommandDescription{
       host, name, host.node().resolve_service_name(name), traits(), script_extension().has_value()});
-  GoalServer::Description server{rcl_cxx::action_type<A>(), name, {}, description_->traits.preempts_all};
+  GoalServer::Description server{rcl_cxx::action_type<A>(), name, {}, description_->is_stop()};
   if (description_->stops_when_client_lost()) {
     server.on_client_lost = [&host](const rcl_cxx::GoalUUID & id) { host.end_modes_of(id); };
   }

@@ -13,6 +13,10 @@ struct CommandTraits {
   /// A stop: when a goal arrives, the arm is taken out of the hands of all others and decelerates as
   /// Command::stop_options() says. Accepted in every state of the robot.
   bool preempts_all = false;
+  /// Stops the arm by what Command::run() does (a protective stop). Its goals are served like those of a
+  /// stop: without waiting for the checks of other commands, beside the limit of goals, in every state of the
+  /// robot, and to their end if the client disappears.
+  bool stops_arm = false;
   /// A new goal preempts the active goal of the same action instead of being rejected as busy.
   bool preempts_self = false;
   /// Switches force mode, freedrive or teach mode on or off, which outlasts the goal (freedrive_start): after

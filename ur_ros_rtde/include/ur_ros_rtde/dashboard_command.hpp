@@ -50,9 +50,12 @@ class DashboardCommand : public DashboardPlugin {
 
   virtual Limits limits() const { return {}; }
   virtual Request request(const Goal &) const { return {}; }
-  /// The command stops the program of the robot. Its goals are served by the thread that serves stops, and
-  /// end a script of the driver that has not begun yet, which the dashboard server does not know.
+  /// The command ends the program of the robot. Its goals also end a script of the driver that has not begun
+  /// yet, which the dashboard server does not know, and make_ready.
   virtual bool stops_program() const { return false; }
+  /// The command stops the arm: its goals are served by the thread that serves stops, beside the limit of
+  /// goals.
+  virtual bool stops_arm() const { return stops_program(); }
   /// By default checks the fields `timeout` and `text` of the goal, if it has them.
   virtual void check(const Goal & goal, Check & check) const;
   /// By default executes request().
@@ -128,8 +131,7 @@ void DashboardCommand<A>::start_action_server(DashboardHost & host, const std::s
 {
   const std::string action = host.node().resolve_service_name(name);
   server_ = std::make_unique<GoalServer>(
-      host,
-      GoalServer::Description{.type = rcl_cxx::action_type<A>(), .name = name, .is_stop = stops_program()},
+      host, GoalServer::Description{.type = rcl_cxx::action_type<A>(), .name = name, .is_stop = stops_arm()},
       [this, &host, action](const rcl_cxx::GoalUUID & id, const void * message) {
         return std::make_shared<GoalOfCommand>(*this, host, action, id,
                                                *static_cast<const typename A::Goal *>(message));

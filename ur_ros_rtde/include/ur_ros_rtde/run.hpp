@@ -142,11 +142,12 @@ class Run {
 
   /// While it exists, the command streams setpoints that it can brake by itself, within its own limits: a
   /// request to end the goal does not stop the arm at once. It has to begin to brake within 10 ms, and report
-  /// each setpoint that does with `sent()`; otherwise the driver stops the arm.
+  /// each setpoint that does with `sent()`; otherwise the driver stops the arm. Throws RobotError without a
+  /// lease of the arm.
   using Braking = Robot::Braking;
-  Braking brake_by_itself() const { return Braking(*context_.lease); }
+  Braking brake_by_itself() const;
   /// While it brakes: no stop has taken the arm out of its hands, and the robot can move.
-  bool may_brake() const { return static_cast<bool>(robot().may_continue(*context_.lease)); }
+  bool may_brake() const { return context_.lease != nullptr && robot().may_continue(*context_.lease); }
 
  protected:
   /// Called 20 times per second during waits.

@@ -160,6 +160,14 @@ Outcome Run::with_warnings(const Outcome & outcome) const
   return Error{outcome.code(), outcome.message().empty() ? warnings_ : outcome.message() + "; " + warnings_};
 }
 
+Run::Braking Run::brake_by_itself() const
+{
+  if (context_.lease == nullptr || !*context_.lease) {
+    throw RobotError({ErrorCode::exception, "a command without Resource::motion has nothing to stop"});
+  }
+  return Braking(*context_.lease);
+}
+
 Outcome Run::trigger(double timeout)
 {
   constexpr double max_timeout = 86400.0;  // s

@@ -2,24 +2,41 @@
 
 namespace ur_ros_rtde {
 
+/// Ends the program of the robot, and with it every motion.
+class StoppingCommand : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
+ public:
+  using SimpleDashboardCommand::SimpleDashboardCommand;
+  bool stops_program() const override { return true; }
+};
+
 // Arm power
 EXPORT_DASHBOARD_COMMAND(PowerOn, "dashboard/power_on", DashboardCommand,
                          {"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}})
-EXPORT_DASHBOARD_COMMAND(PowerOff, "dashboard/power_off", DashboardCommand,
-                         {"power off", "Powering off", {"robotmode", {"POWER_OFF"}}})
+class PowerOff : public StoppingCommand {
+ public:
+  PowerOff() : StoppingCommand({"power off", "Powering off", {"robotmode", {"POWER_OFF"}}}) {}
+};
+UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
 EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardCommand,
                          {"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}})
-EXPORT_DASHBOARD_COMMAND(Shutdown, "dashboard/shutdown", DashboardCommand, {"shutdown", "Shutting down"})
+class Shutdown : public StoppingCommand {
+ public:
+  Shutdown() : StoppingCommand({"shutdown", "Shutting down"}) {}
+};
+UR_ROS_RTDE_EXPORT(Shutdown, "dashboard/shutdown")
 
 // Program
 EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
                          {"play", "Starting program", {"programState", {"PLAYING"}}})
-EXPORT_DASHBOARD_COMMAND(Pause, "dashboard/pause", DashboardCommand,
-                         {"pause", "Pausing program", {"programState", {"PAUSED"}}})
-class StopProgram : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
+class Pause : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
  public:
-  StopProgram() : SimpleDashboardCommand({"stop", "Stopped", {"programState", {"STOPPED"}, true}}) {}
-  bool stops_program() const override { return true; }
+  Pause() : SimpleDashboardCommand({"pause", "Pausing program", {"programState", {"PAUSED"}}}) {}
+  bool stops_arm() const override { return true; }  // but not the program, which can go on
+};
+UR_ROS_RTDE_EXPORT(Pause, "dashboard/pause")
+class StopProgram : public StoppingCommand {
+ public:
+  StopProgram() : StoppingCommand({"stop", "Stopped", {"programState", {"STOPPED"}, true}}) {}
 };
 UR_ROS_RTDE_EXPORT(StopProgram, "dashboard/stop")
 

@@ -1,3 +1,5 @@
+#include <chrono>
+#include <tuple>
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 
 #include "operation/dashboard_helpers.hpp"
@@ -16,12 +18,12 @@ class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const auto stopped = run.wait_for_stop();
-    if (!stopped && stopped.error().code != ErrorCode::link_lost) {
-      return stopped.error();
+    constexpr std::chrono::seconds stop_timeout{1};
+    if (const auto stopped = run.wait_for_stop(); !stopped) {
+      run.warn(stopped.error().message);  // all the more reason to power off
     }
     DashboardSession dashboard(run.robot().address());
-    send_to_dashboard(dashboard, "stop");  // fails if no program is running, which is not an error
+    std::ignore = dashboard.request("stop", stop_timeout);  // the power off does not depend on it
     if (const Status status = command_dashboard(dashboard, "power off", "Powering off"); !status) {
       return status;
     }

@@ -6,7 +6,7 @@ namespace ur_ros_rtde {
 
 class TriggerProtectiveStop : public Command<ur_ros_rtde_msgs::action::Trigger> {
   /// Allowed during every motion.
-  CommandTraits traits() const override { return {.resource = Resource::none}; }
+  CommandTraits traits() const override { return {.resource = Resource::none, .stops_arm = true}; }
 
   Outcome run(const Goal &, Run & run) override
   {

@@ -101,6 +101,25 @@ class Turns : public Command<SpeedJ> {
   }
 };
 
+/// Starts to move the tool at a velocity, and succeeds before it moves.
+class StartsSpeedL : public Command<SpeedJ> {
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, goal.acceleration, 0.0);
+    return Outcome::success();
+  }
+};
+
+/// Starts to push the tool along the Z axis, and succeeds before it moves.
+class StartsForceMode : public Command<SpeedJ> {
+  Outcome run(const Goal &, Run & run) override
+  {
+    run.control()->forceMode({0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {0, 0, 1, 0, 0, 0},
+                             {0.0, 0.0, 10.0, 0.0, 0.0, 0.0}, 2, {0.1, 0.1, 0.05, 0.5, 0.5, 0.5});
+    return Outcome::success();
+  }
+};
+
 using TurnsAsMode = Turns<Resource::mode>;
 using TurnsAsOutput = Turns<Resource::io>;
 
@@ -110,6 +129,8 @@ UR_ROS_RTDE_EXPORT(CallsItself, "calls_itself")
 UR_ROS_RTDE_EXPORT(CallsWithoutTheArm, "calls_without_the_arm")
 UR_ROS_RTDE_EXPORT(LeavesTurning, "leaves_turning")
 UR_ROS_RTDE_EXPORT(MovesOn, "moves_on")
+UR_ROS_RTDE_EXPORT(StartsSpeedL, "starts_speed_l")
+UR_ROS_RTDE_EXPORT(StartsForceMode, "starts_force_mode")
 UR_ROS_RTDE_EXPORT(TurnsAsMode, "turns_as_mode")
 UR_ROS_RTDE_EXPORT(TurnsAsOutput, "turns_as_output")
 

@@ -20,11 +20,12 @@ Clock::time_point end_of(const SpeedJAction::Goal & goal)
 
 }  // namespace
 
-/// Its check takes 300 ms, which it must not.
-class SlowToCheck : public Command<SpeedJAction> {
+/// Its check takes `check_time` ms, which it must not.
+template <int check_time>
+class SlowCheck : public Command<SpeedJAction> {
   void check(const Goal &, Check & check) const override
   {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(check_time));
     check.start();
   }
   Outcome run(const Goal & goal, Run & run) override
@@ -34,6 +35,9 @@ class SlowToCheck : public Command<SpeedJAction> {
     return Outcome::success();
   }
 };
+
+using SlowToCheck = SlowCheck<300>;
+using VerySlowToCheck = SlowCheck<2000>;
 
 /// Computes for 200 ms between two looks at the reason to stop, while the arm moves.
 class SlowToLook : public Command<SpeedJAction> {
@@ -92,6 +96,38 @@ class TurnsAndHangs : public Command<SpeedJAction> {
   }
 };
 
+/// Turns joints while a timer of its own keeps the thread that accepts goals for 5 s.
+class BlocksCallbacks : public Command<SpeedJAction> {
+ public:
+  void on_load(CommandHost & host) override
+  {
+    timer_ = host.node().create_wall_timer(std::chrono::milliseconds(1), [this] {
+      timer_->cancel();
+      std::this_thread::sleep_for(std::chrono::seconds(5));
+    });
+    timer_->cancel();  // until there is a goal
+  }
+  void on_unload() override { timer_.reset(); }
+
+ private:
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    timer_->reset();
+    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration,
+                          0.0);
+    const auto why = run.sleep_for(end_of(goal) - Clock::now());
+    return why ? Outcome(*why) : Outcome::success();
+  }
+
+  rcl_cxx::Timer::SharedPtr timer_;
+};
+
+/// A dashboard command whose check takes 2 s, which it must not.
+class DashboardSlowToCheck : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
+  void check(const Goal &, Check &) const override { std::this_thread::sleep_for(std::chrono::seconds(2)); }
+  Outcome run(const Goal &, Run &) override { return Outcome::success(); }
+};
+
 /// A dashboard command that hangs for 4 s, less than the driver waits for it at its end.
 class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
   Outcome run(const Goal &, Run &) override
@@ -102,9 +138,12 @@ class Hangs : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> 
 };
 
 UR_ROS_RTDE_EXPORT(SlowToCheck, "slow_to_check")
+UR_ROS_RTDE_EXPORT(VerySlowToCheck, "very_slow_to_check")
 UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
 UR_ROS_RTDE_EXPORT(TurnsAndHangs, "turns_and_hangs")
+UR_ROS_RTDE_EXPORT(BlocksCallbacks, "blocks_callbacks")
+UR_ROS_RTDE_EXPORT(DashboardSlowToCheck, "dashboard/slow_to_check")
 UR_ROS_RTDE_EXPORT(Hangs, "dashboard/hangs")
 
 }  // namespace ur_ros_rtde

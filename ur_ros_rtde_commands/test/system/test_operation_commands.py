@@ -1,9 +1,14 @@
 """Bringing the robot into operation from any state, and powering it down."""
 
+import socket
+import socketserver
+import threading
+
 import pytest
+import robot_fixtures
 from action_msgs.msg import GoalStatus
 from arm_state import home_plus, wait_until_moving
-from support import HOME, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -115,11 +120,12 @@ def test_cancel_and_timeout_end_make_ready(robot, simulator):
     make_ready(robot)
 
 
-def test_stand_down_ends_make_ready(robot, simulator):
+@pytest.mark.parametrize("command", ["stand_down", "dashboard/power_off"])
+def test_a_command_that_powers_off_ends_make_ready(robot, simulator, command):
     power_off(robot, simulator)
     goal = robot.send(MakeReady, "make_ready")
     wait_for(lambda: simulator.state()["robot_mode"] != "POWER_OFF", 10.0, "the arm to be powered on")
-    robot.send(DashboardCommand, "stand_down").succeeded()
+    robot.send(DashboardCommand, command).succeeded()
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
     begin = simulator.state()["timestamp"]
     wait_for(lambda: simulator.state()["timestamp"] > begin + 3.0, 10.0, "the time in which make_ready would send the next command")
@@ -134,3 +140,57 @@ def test_stand_down_preempts_the_running_motion(robot, simulator):
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
     assert simulator.state()["robot_mode"] == "POWER_OFF"
     make_ready(robot)
+
+
+DASHBOARD_PORT = 29999
+PORT_BEHIND = 29998  # of the simulator's dashboard server
+
+
+class RefusesToStop(socketserver.StreamRequestHandler):
+    """Passes everything on to the dashboard server of the simulator, but `stop`."""
+
+    def handle(self):
+        with socket.create_connection((self.server.server_address[0], PORT_BEHIND)) as behind, behind.makefile("rb") as answers:
+            self.wfile.write(answers.readline())
+            for line in self.rfile:
+                if line.strip() == b"stop":
+                    self.wfile.write(b"Failed to execute: stop\n")
+                else:
+                    behind.sendall(line)
+                    self.wfile.write(answers.readline())
+
+
+class DashboardProxy(socketserver.ThreadingTCPServer):
+    allow_reuse_address = True
+    daemon_threads = True
+
+
+def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes):
+    """Without a watchdog, only the dashboard server could end the script."""
+    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), RefusesToStop) as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "watchdog_frequency:=0.0",
+                                      "plugins:=[move_j,send_script,stand_down]", namespace="unstoppable"))
+        client = Client("unstoppable")
+        try:
+            robot_fixtures.make_ready(client)
+            assert client.send(SendScript, "send_script", script=f"movej({home_plus(3.0)}, a=1, v=0.2)").accepted
+            wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
+            result = client.send(DashboardCommand, "stand_down").succeeded()
+            assert "all attempts to stop the arm have failed" in result.message, result.message
+            assert simulator.state()["robot_mode"] == "POWER_OFF" and simulator.is_at_rest()
+        finally:
+            client.close()
+            driver.stop()
+            proxy.shutdown()
+
+
+def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simulator):
+    goal = robot.send(SendScript, "send_script", script=f"movej({home_plus(0.5)}, a=1, v=0.2)")
+    wait_until_moving(robot)
+    robot.send(DashboardCommand, "dashboard/pause").succeeded()
+    wait_for(simulator.is_at_rest, 10.0, "standstill")
+    robot.send(DashboardCommand, "dashboard/play").succeeded()
+    goal.succeeded()
+    assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.5, abs=0.01)

@@ -5,13 +5,18 @@ from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3, Wrench
 from plugin_prefix import environment_of_test_commands
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, start_node, wait_for
+from support import HOME, TIMEOUT_FACTOR, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardQuery, ForceMode, MoveJ, SpeedJ, Stop
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, ForceMode, MoveJ, SpeedJ, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-PLUGINS = "plugins:=[move_j,stop,turns_as_mode,turns_and_hangs,slow_to_check,turns_as_output,force_mode_start,dashboard/hangs]"
+STOPS = ("stop", "stand_down", "trigger_protective_stop", "dashboard/stop", "dashboard/pause", "dashboard/power_off",
+         "dashboard/shutdown")
+PLUGINS = ("plugins:=[move_j,turns_as_mode,turns_and_hangs,slow_to_check,very_slow_to_check,turns_as_output,force_mode_start,"
+           f"starts_speed_l,starts_force_mode,blocks_callbacks,dashboard/hangs,dashboard/slow_to_check,{','.join(STOPS)}]")
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
+DOCUMENTED_STOPPING_TIME = 0.6  # s, of a cancel and of a stop: docs/use/safety.md
+ACTING_TIME = 0.5  # s, from the request of a stop to its effect
 
 
 @pytest.fixture
@@ -93,3 +98,57 @@ def test_a_goal_whose_check_was_overtaken_by_a_stop_is_rejected(cell):
     client.send(Stop, "stop").succeeded()
     assert not goal.accepted and "the arm was stopped" in client.rejection(goal).message
     assert simulator.is_at_rest()
+
+
+@pytest.mark.parametrize("name", ["starts_speed_l", "starts_force_mode"])
+def test_what_a_command_that_ends_before_its_motion_has_started_is_stopped(cell, name):
+    simulator, _driver, client = cell
+    start = simulator.state()["actual"]["position"]
+    client.send(SpeedJ, name, acceleration=0.5).succeeded()
+    begin = simulator.state()["timestamp"]
+    wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would move")
+    assert simulator.is_at_rest() and simulator.state()["actual"]["position"] == pytest.approx(start, abs=0.05)
+    client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+
+
+@pytest.mark.parametrize("end", ["cancel", "stop"])
+def test_a_cancel_and_a_stop_do_not_wait_for_a_callback_of_a_plugin(cell, end):
+    simulator, _driver, client = cell
+    client.send(Stop, "stop").succeeded()  # the server is known from now on
+    goal = client.send(SpeedJ, "blocks_callbacks", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=5.0, time=10.0)
+    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 0.45, 10.0, "a motion")
+    waiting = client.send(MoveJ, "move_j", speed=-1.0)
+    begin = simulator.state()["timestamp"]
+    if end == "cancel":
+        goal.cancel()
+    else:
+        client.send(Stop, "stop")
+    assert time_to_rest(simulator, begin) < DOCUMENTED_STOPPING_TIME * TIMEOUT_FACTOR
+    status, _result = goal.wait_for_result()
+    assert status == (GoalStatus.STATUS_CANCELED if end == "cancel" else GoalStatus.STATUS_ABORTED)
+    assert not waiting.answered(), "the callback has ended before"
+    assert not waiting.accepted
+
+
+@pytest.mark.parametrize("stop, action, slow, slow_action, mode", [
+    ("trigger_protective_stop", Trigger, "very_slow_to_check", SpeedJ, {"safety_mode": "PROTECTIVE_STOP"}),
+    ("dashboard/power_off", DashboardCommand, "dashboard/slow_to_check", DashboardQuery, {"robot_mode": "POWER_OFF"}),
+])
+def test_a_command_that_stops_the_arm_does_not_wait_for_the_check_of_another(cell, stop, action, slow, slow_action, mode):
+    simulator, _driver, client = cell
+    slow_goals = [client.send(slow_action, slow) for _ in range(2)]  # the second one also outlasts the discovery of the stop
+    client.send(action, stop)
+    begin = simulator.state()["timestamp"]
+    wait_for(lambda: mode.items() <= simulator.state().items(), 15.0, f"the effect of {stop}")
+    assert simulator.state()["timestamp"] - begin < ACTING_TIME * TIMEOUT_FACTOR
+    assert not slow_goals[-1].answered(), "its check has ended before"
+
+
+def test_the_servers_of_the_commands_that_stop_the_arm_exist_before_their_first_client(cell):
+    _simulator, _driver, client = cell
+    servers = {f"/stubborn/{name}/_action/send_goal" for name in STOPS}
+
+    def missing():
+        return servers - dict(client.node.get_service_names_and_types()).keys()
+
+    wait_for(lambda: not missing(), 10.0, f"servers, at first without {missing()}")
