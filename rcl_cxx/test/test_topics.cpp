@@ -141,12 +141,11 @@ TEST_F(TopicTest, TellsPublishersApart)
 {
   std::mutex mutex;
   std::map<std::string, std::set<rcl_cxx::PublisherId>> publishers;  // by text
-  const auto subscription =
-      node->create_subscription<String>("topic", rcl_cxx::QoS::reliable(10),
-                                        [&](const String & message, const rcl_cxx::PublisherId & publisher) {
-                                          const std::lock_guard lock(mutex);
-                                          publishers[message.data].insert(publisher);
-                                        });
+  const auto subscription = node->create_subscription<String>(
+      "topic", rcl_cxx::QoS::reliable(10), [&](const String & message, const rcl_cxx::MessageInfo & info) {
+        const std::lock_guard lock(mutex);
+        publishers[message.data].insert(info.publisher);
+      });
   const auto one = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
   const auto other = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
   ASSERT_TRUE(
@@ -164,6 +163,33 @@ TEST_F(TopicTest, TellsPublishersApart)
   EXPECT_EQ(publishers["other"].size(), 1u);
   EXPECT_EQ(publishers["one"], publishers["end"]);
   EXPECT_NE(publishers["one"], publishers["other"]);
+}
+
+TEST_F(TopicTest, TellsWhenMessagesWerePublishedAndWhetherOthersWereLost)
+{
+  const auto begin = std::chrono::system_clock::now();
+  std::mutex mutex;
+  std::vector<rcl_cxx::MessageInfo> received;
+  const auto subscription = node->create_subscription<String>(
+      "topic", rcl_cxx::QoS::reliable(10), [&](const String &, const rcl_cxx::MessageInfo & info) {
+        const std::lock_guard lock(mutex);
+        received.push_back(info);
+      });
+  const auto publisher = node->create_publisher<String>("topic", rcl_cxx::QoS::reliable(10));
+  ASSERT_TRUE(eventually([&] { return publisher->get_subscription_count() == 1; }));
+  publisher->publish(text("one"));
+  publisher->publish(text("two"));
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return received.size() == 2;
+  }));
+  EXPECT_GE(received[0].published, begin);
+  EXPECT_GE(received[1].published, received[0].published);
+  EXPECT_LE(received[1].published, std::chrono::system_clock::now());
+  if (!received[0].number) {
+    GTEST_SKIP() << "this middleware does not count messages";
+  }
+  EXPECT_EQ(*received[1].number, *received[0].number + 1);
 }
 
 TEST_F(TopicTest, ReportsFailureAndContinues)

@@ -61,7 +61,7 @@ struct Behavior {
   std::function<void(const Outcome &, Trigger::Result &)> fill_result =
       [](const Outcome & outcome, Trigger::Result & result) { write_standard_fields(outcome, result); };
   std::function<std::optional<Error>()> ended_by_robot = [] { return std::nullopt; };
-  std::function<bool()> is_stopped = [] { return true; };
+  std::function<std::optional<Status>()> stopped = [] { return Status(); };
   std::function<void()> release = [] {};
 };
 
@@ -75,7 +75,7 @@ class BehavingGoal : public Goal {
   Status check(std::vector<GoalQuery> & queries) override { return behavior_.check(queries); }
   void release() override { behavior_.release(); }
   std::optional<Error> ended_by_robot() const override { return behavior_.ended_by_robot(); }
-  bool is_stopped() const override { return behavior_.is_stopped(); }
+  std::optional<Status> stopped() const override { return behavior_.stopped(); }
 
  private:
   Outcome execute() override { return behavior_.execute(stop_request()); }

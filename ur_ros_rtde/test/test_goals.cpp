@@ -106,7 +106,7 @@ TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
   std::promise<void> returns;
   std::atomic<bool> at_rest{false};
   std::atomic<int> released{0};
-  behavior_.is_stopped = [&] { return at_rest.load(); };
+  behavior_.stopped = [&] { return at_rest ? std::make_optional(Status()) : std::nullopt; };
   behavior_.release = [&] { ++released; };
   behavior_.execute = [&](const StopRequest &) {
     returns.get_future().wait();
@@ -125,6 +125,26 @@ TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
   EXPECT_NE(end.get().result.message.find("did not return"), std::string::npos) << end.get().result.message;
   EXPECT_EQ(released, 1);
   returns.set_value();
+}
+
+TEST_F(GoalTest, SaysIfItsCommandDoesNotReturnAndTheArmDoesNotRest)
+{
+  std::promise<void> returns;
+  behavior_.stopped = [] { return failure(ErrorCode::timeout, "all attempts have failed"); };
+  behavior_.execute = [&](const StopRequest &) {
+    returns.get_future().wait();
+    return Outcome::success("too late");
+  };
+  serve();
+  const auto goal = send_and_go_on();
+  ASSERT_TRUE(goal);
+  EXPECT_EQ(goal->async_cancel().get().code, rcl_cxx::CancelCode::none);
+  auto end = goal->async_get_result();
+  EXPECT_EQ(end.wait_for(seconds(20)), std::future_status::ready);
+  returns.set_value();
+  const std::string message = end.get().result.message;
+  EXPECT_NE(message.find("standstill is not confirmed: all attempts have failed"), std::string::npos)
+      << message;
 }
 
 /// No client tells the goal to end, and its command does not look at the robot.

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
+#include "teleoperation/publisher_pause.hpp"
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/target_messages.hpp"
@@ -104,6 +106,26 @@ TEST(TargetPeriodTest, IsSmoothedAndStartsAnewAfterAPause)
   }
   EXPECT_NEAR(last, 0.02, 1e-3);
   EXPECT_DOUBLE_EQ(period.next(0.2, timeout), 0.05) << "the first one after a pause";
+}
+
+rcl_cxx::MessageInfo published_at(double time, std::optional<std::uint64_t> number = {})
+{
+  rcl_cxx::MessageInfo info;
+  info.published += std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(time));
+  info.number = number;
+  return info;
+}
+
+TEST(PublisherPauseTest, IsATimeWithoutMessages)
+{
+  constexpr double timeout = 0.1;
+  EXPECT_TRUE(has_paused(published_at(1.0, 7), published_at(1.11, 8), timeout));
+  EXPECT_FALSE(has_paused(published_at(1.0, 7), published_at(1.09, 8), timeout)) << "late on its way";
+  EXPECT_FALSE(has_paused(published_at(1.0, 7), published_at(1.4, 27), timeout)) << "messages were lost";
+  EXPECT_TRUE(has_paused(published_at(1.0), published_at(1.4), timeout)) << "they are not counted";
+  auto other = published_at(1.02, 1);
+  other.publisher[0] = 1;
+  EXPECT_TRUE(has_paused(published_at(1.0, 7), other, timeout)) << "another publisher";
 }
 
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)

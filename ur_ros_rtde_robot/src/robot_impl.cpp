@@ -63,7 +63,8 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       activities(interfaces, registers, tracker),
       stopper(
           options, state, interfaces, registers, tracker, activities, arbiter,
-          [this] { return manager.has_left_program(); }, log),
+          {[this] { return manager.has_left_program(); }, [this] { return manager.has_foreign_program(); }},
+          log),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
               [this](const ControllerVersion & version) { return control_scripts.program(version); }},
@@ -262,13 +263,6 @@ void Robot::Impl::end_program()
   const auto control = interfaces.control();
   if (!control) {
     return;
-  }
-  if (options.control_mode == ControlMode::control_urcap) {
-    // The program must not continue after its External Control node: that might move the arm.
-    const auto ended = stop_program(options.address);
-    if (ended || interfaces.watchdog_frequency() > 0.0) {
-      return;
-    }
   }
   bool ended = false;
   try {

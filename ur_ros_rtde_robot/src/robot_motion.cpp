@@ -207,12 +207,12 @@ bool Robot::wait_for_stopped_holders(std::chrono::milliseconds timeout) const
   return impl_->arbiter.wait_for_revoked_holders(timeout);
 }
 
-bool Robot::is_stopped(const Lease & lease) const
+std::optional<Status> Robot::stopped(const Lease & lease) const
 {
   if (!lease || !moves_arm(lease.permit_->claim().resource)) {
-    return true;
+    return Status();
   }
-  return lease.permit_->revoked() && !is_stopping();
+  return impl_->stopper.outcome(*lease.permit_);
 }
 
 Robot::Braking::Braking(const Lease & lease) : permit_(lease.permit_)

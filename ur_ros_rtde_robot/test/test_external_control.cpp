@@ -123,6 +123,19 @@ TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
   EXPECT_TRUE(works());
 }
 
+TEST_F(ExternalControlTest, EndsTheProgramWithItsNode)
+{
+  start(options());
+  controller.control({{"command", "store_external_control"},
+                      {"host", own_address()},
+                      {"port", port},
+                      {"next", "movej([1, -1.5, 1.5, -1.5, -1.5, 0], a=5, v=2)"}});
+  play();
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(control()->stopScript());
+  EXPECT_TRUE(keeps_still());
+}
+
 TEST_F(ExternalControlTest, DoesNotResumeTheMotionOfAPausedProgram)
 {
   start(options());

@@ -182,6 +182,45 @@ TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
       << report.error().message;
 }
 
+TEST_F(StopTest, EndsAForeignProgramThatStandsIfAsked)
+{
+  make_both();
+  const std::string swinging =
+      "def swing():\n"
+      "  q = get_actual_joint_positions()\n"
+      "  while True:\n"
+      "    q[0] = q[0] + 0.2\n"
+      "    movej(q, a=10, v=2)\n"
+      "    sleep(0.5)\n"
+      "  end\n"
+      "end\n";
+  controller.control({{"command", "run_script"}, {"script", swinging}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  ASSERT_TRUE(eventually([&] { return !at_rest(); }) && eventually([&] { return at_rest(); }));
+  EXPECT_TRUE(robot->stop_motion()) << "the end of a goal or of the driver leaves it alone";
+  EXPECT_TRUE(eventually([&] { return !at_rest(); }) && eventually([&] { return at_rest(); }));
+  StopOptions options;
+  options.ends_foreign_program = true;
+  const auto report = robot->stop_motion(options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::program_stopped);
+  EXPECT_TRUE(becomes_ready());
+}
+
+TEST_F(StopTest, LeavesAForeignProgramAloneThatIsPaused)
+{
+  make_both();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::paused; }));
+  StopOptions options;
+  options.ends_foreign_program = true;
+  EXPECT_TRUE(robot->stop_motion(options));
+  EXPECT_EQ(controller.state().at("program").at("state"), "PAUSED");
+}
+
 TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)
 {
   auto options = robot_options();

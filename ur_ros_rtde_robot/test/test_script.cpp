@@ -177,6 +177,40 @@ TEST_F(ScriptTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptTest, IsEndedIfItIsPausedSoThatItCannotResume)
+{
+  make_both();
+  const auto options = when_it_turns([&] { controller.control({{"command", "pause_program"}}); });
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(controller.state().at("program").at("state") != "PAUSED");
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(ScriptTest, MayBePausedIfItsCallerWaits)
+{
+  make_both();
+  ScriptOptions options;
+  options.may_be_paused = true;
+  std::optional<double> paused;  // in the robot's time
+  options.stop_reason = [&, resumed = false]() mutable -> std::optional<Error> {
+    const double now = robot->latest()->controller_time;
+    if (!paused && turns()) {
+      controller.control({{"command", "pause_program"}});
+      paused = now;
+    } else if (paused && !resumed && now > *paused + 0.3) {
+      controller.control({{"command", "play"}});
+      resumed = true;
+    }
+    return std::nullopt;
+  };
+  const auto report = run_script("movej([1, -1.5, 1.5, -1.5, -1.5, 0], a=5, v=2)\n", options);
+  EXPECT_EQ(report.end, ScriptEnd::finished) << report.error.message;
+  EXPECT_TRUE(paused);
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
 {
   make_both();

@@ -3,10 +3,12 @@
 #include <rmw/types.h>
 
 #include <array>
+#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <rosidl_typesupport_cpp/message_type_support.hpp>
 #include <string>
 #include <type_traits>
@@ -17,6 +19,15 @@ namespace rcl_cxx {
 /// Equal for all messages of one publisher, different for any other publisher.
 using PublisherId = std::array<std::uint8_t, RMW_GID_STORAGE_SIZE>;
 
+/// What the middleware knows about a message.
+struct MessageInfo {
+  PublisherId publisher{};
+  /// When it was published, by the clock of the publisher's host.
+  std::chrono::sys_time<std::chrono::nanoseconds> published{};
+  /// Of the publisher's messages, one more with each of them; unknown with some middlewares (CycloneDDS).
+  std::optional<std::uint64_t> number;
+};
+
 namespace detail {
 class NodeImpl;
 class SubscriptionImpl;
@@ -24,7 +35,7 @@ class SubscriptionImpl;
 struct ErasedSubscription {
   const rosidl_message_type_support_t * type_support;
   std::shared_ptr<void> (*make_message)();
-  std::function<void(const std::shared_ptr<void> &, const PublisherId &)> callback;
+  std::function<void(const std::shared_ptr<void> &, const MessageInfo &)> callback;
 };
 }  // namespace detail
 
@@ -48,7 +59,7 @@ class SubscriptionBase {
 };
 
 /// Created by Node::create_subscription. The callback takes `const M &` (valid during the call; the message
-/// is reused), `const M &, const PublisherId &`, or `std::shared_ptr<const M>` (may be kept). It runs in the
+/// is reused), `const M &, const MessageInfo &`, or `std::shared_ptr<const M>` (may be kept). It runs in the
 /// executor's thread.
 template <typename M>
 class Subscription : public SubscriptionBase {
@@ -72,24 +83,24 @@ class Subscription : public SubscriptionBase {
 
  private:
   template <typename F>
-  static std::function<void(const std::shared_ptr<void> &, const PublisherId &)> erase(F && callback)
+  static std::function<void(const std::shared_ptr<void> &, const MessageInfo &)> erase(F && callback)
   {
-    if constexpr (std::invocable<std::decay_t<F> &, const M &, const PublisherId &>) {
+    if constexpr (std::invocable<std::decay_t<F> &, const M &, const MessageInfo &>) {
       return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
-                                             const PublisherId & publisher) mutable {
-        f(*static_cast<const M *>(message.get()), publisher);
+                                             const MessageInfo & info) mutable {
+        f(*static_cast<const M *>(message.get()), info);
       };
     } else if constexpr (std::invocable<std::decay_t<F> &, const M &>) {
       return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
-                                             const PublisherId &) mutable {
+                                             const MessageInfo &) mutable {
         f(*static_cast<const M *>(message.get()));
       };
     } else {
       static_assert(std::invocable<std::decay_t<F> &, std::shared_ptr<const M>>,
-                    "the callback takes const M &, const M & and const PublisherId &, or "
+                    "the callback takes const M &, const M & and const MessageInfo &, or "
                     "std::shared_ptr<const M>");
       return [f = std::forward<F>(callback)](const std::shared_ptr<void> & message,
-                                             const PublisherId &) mutable {
+                                             const MessageInfo &) mutable {
         f(std::static_pointer_cast<const M>(message));
       };
     }

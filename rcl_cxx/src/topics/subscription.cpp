@@ -13,6 +13,19 @@
 
 namespace rcl_cxx {
 namespace detail {
+namespace {
+MessageInfo to_message_info(const rmw_message_info_t & rmw_info)
+{
+  MessageInfo info;
+  std::ranges::copy(rmw_info.publisher_gid.data, info.publisher.begin());
+  info.published = decltype(info.published)(std::chrono::nanoseconds(rmw_info.source_timestamp));
+  if (rmw_info.publication_sequence_number != RMW_MESSAGE_INFO_SEQUENCE_NUMBER_UNSUPPORTED) {
+    info.number = rmw_info.publication_sequence_number;
+  }
+  return info;
+}
+}  // namespace
+
 class SubscriptionImpl : public Waitable {
  public:
   SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased, const std::string & topic,
@@ -22,7 +35,7 @@ class SubscriptionImpl : public Waitable {
   const std::string & get_topic_name() const noexcept { return topic_; }
 
   /// Returns false if there is no message.
-  bool take(void * message, PublisherId & publisher);
+  bool take(void * message, MessageInfo & info);
 
   void set_on_ready_callbacks() override;
 
@@ -93,22 +106,22 @@ void SubscriptionImpl::execute(std::size_t source)
   if (!message_ || message_.use_count() > 1) {
     message_ = erased_.make_message();
   }
-  PublisherId publisher{};
-  if (take(message_.get(), publisher)) {
-    erased_.callback(message_, publisher);
+  MessageInfo info;
+  if (take(message_.get(), info)) {
+    erased_.callback(message_, info);
   }
 }
 
-bool SubscriptionImpl::take(void * message, PublisherId & publisher)
+bool SubscriptionImpl::take(void * message, MessageInfo & info)
 {
-  rmw_message_info_t info = rmw_get_zero_initialized_message_info();
-  const rcl_ret_t code = rcl_take(&subscription_, message, &info, nullptr);
+  rmw_message_info_t rmw_info = rmw_get_zero_initialized_message_info();
+  const rcl_ret_t code = rcl_take(&subscription_, message, &rmw_info, nullptr);
   if (code == RCL_RET_SUBSCRIPTION_TAKE_FAILED) {
     rcl_reset_error();
     return false;
   }
   check_rcl(code, label(), "cannot take a message");
-  std::copy(std::begin(info.publisher_gid.data), std::end(info.publisher_gid.data), publisher.begin());
+  info = to_message_info(rmw_info);
   return true;
 }
 }  // namespace detail
@@ -124,8 +137,8 @@ SubscriptionBase::~SubscriptionBase()
 }
 bool SubscriptionBase::take(void * message)
 {
-  PublisherId publisher{};
-  return impl_->take(message, publisher);
+  MessageInfo info;
+  return impl_->take(message, info);
 }
 const std::string & SubscriptionBase::get_topic_name() const noexcept
 {

@@ -71,7 +71,11 @@ class CommandHost : public PluginHost {
   ArmLimits limits() const;
   /// Robot::begin_stop(), after which no goal moves the arm that was received before.
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
-  /// Number of calls of begin_stop().
+  /// For a command that stops the program through the dashboard server: ends the script that runs or is about
+  /// to run, and no goal moves the arm that was received before. The control program is not started in its
+  /// place while the returned object exists.
+  std::shared_ptr<void> end_script(const Error & why);
+  /// Number of calls of begin_stop() and end_script().
   std::uint32_t stops() const { return stops_; }
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
@@ -98,8 +102,7 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  /// Ends the script that the command server of this process runs or is about to run. The control program is
-  /// not started in its place while the returned object exists.
+  /// CommandHost::end_script() of the command server in this process.
   using EndScript = std::function<std::shared_ptr<void>(const Error & why)>;
 
   DashboardHost(rcl_cxx::Node & node, bool servers_on_demand, DashboardConnection & connection,

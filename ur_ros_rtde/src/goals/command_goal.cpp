@@ -71,7 +71,7 @@ bool CommandGoal::preempts() const
 /// Takes the robot, unless other goals have to be preempted first, which takes time.
 Status CommandGoal::prepare()
 {
-  if (command_->traits.allowed_in_any_state || command_->traits.preempts_all) {
+  if (command_->traits.allowed_in_any_state || command_->is_stop()) {
     return {};
   }
   if (command_->is_extension) {
@@ -138,6 +138,7 @@ void CommandGoal::begin_stop()
   if (const auto holder = robot().holder(Resource::script)) {
     preempted_goal_ = fmt::format("{}, goal {}", holder->owner, holder->id);
   }
+  stop_options_.ends_foreign_program = true;
   stopping_ = command_->host.begin_stop(
       stop_options_,
       Error{ErrorCode::preempted, fmt::format("preempted by {}, goal {}", action(), id().short_string())});
@@ -209,13 +210,13 @@ std::optional<Error> CommandGoal::ended_by_robot() const
   return valid ? std::nullopt : std::make_optional(valid.error());
 }
 
-bool CommandGoal::is_stopped() const
+std::optional<Status> CommandGoal::stopped() const
 {
   if (command_->only_stops()) {
-    return !robot().is_stopping();
+    return robot().is_stopping() ? std::nullopt : std::make_optional(Status());
   }
   const std::lock_guard lock(lease_mutex_);
-  return robot().is_stopped(lease_);
+  return robot().stopped(lease_);
 }
 
 Status CommandGoal::acquire()

@@ -38,6 +38,9 @@ void Goal::stop(const Error & why)
 {
   const std::lock_guard lock(mutex_);
   if (!stop_request_->request(why)) {
+    if (accepted_ && why.code == ErrorCode::shutdown) {
+      on_stop(why);  // has less time than what it was told before
+    }
     return;
   }
   if (!accepted_) {
@@ -51,10 +54,12 @@ void Goal::stop(const Error & why)
 void Goal::abandon()
 {
   const Error why = stop_request_->reason().value_or(Error{ErrorCode::timeout, "the goal did not end"});
+  const Status at_rest = stopped().value_or(Status());
   end(Error{why.code,
-            fmt::format("{}; the command did not return after that: its result was sent without it, and it "
-                        "can no longer move the arm",
-                        why.message)});
+            fmt::format("{}; the command did not return after that: its result was sent without it, and {}",
+                        why.message,
+                        at_rest ? "it can no longer move the arm"
+                                : "standstill is not confirmed: " + at_rest.error().message)});
 }
 
 void Goal::end(const Outcome & outcome)

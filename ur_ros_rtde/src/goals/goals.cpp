@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "process/thread_name.hpp"
+
 namespace ur_ros_rtde {
 
 Goals::Goals() : supervisor_([this](const std::stop_token & stop) { supervise_goals(stop); }) {}
@@ -77,6 +79,7 @@ void Goals::execute_tasks()
     const auto task = std::prev(running_.end());
     lock.unlock();
     ending_.notify_one();
+    name_thread("goal " + task->goal->name());
     task->work();
     task->work = nullptr;  // destroys captured objects before the goal counts as ended
     lock.lock();
@@ -85,6 +88,7 @@ void Goals::execute_tasks()
     ended_.notify_all();
     lock.unlock();
     goal.reset();
+    name_thread("idle");
     lock.lock();
   }
 }
@@ -142,7 +146,7 @@ bool Goals::has_ended(Ending & ending)
   if (ending.goal->is_finished()) {
     return true;
   }
-  if (!ending.deadline && ending.goal->is_stopped()) {
+  if (!ending.deadline && ending.goal->stopped()) {
     ending.deadline = Clock::now() + return_timeout;
   }
   if (!ending.deadline || Clock::now() <= *ending.deadline) {

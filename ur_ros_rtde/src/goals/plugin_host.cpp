@@ -42,6 +42,17 @@ std::shared_future<Expected<StopReport>> CommandHost::begin_stop(const StopOptio
   return robot_.begin_stop(options, why);
 }
 
+std::shared_ptr<void> CommandHost::end_script(const Error & why)
+{
+  ++stops_;
+  auto hold = robot_.hold_program();
+  const auto holder = robot_.holder(Resource::mode);  // conflicts with a script
+  if (holder && holder->resource == Resource::script) {
+    robot_.begin_stop({}, why);
+  }
+  return hold;
+}
+
 void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)
 {
   const std::lock_guard lock(mode_owner_mutex_);

@@ -24,6 +24,7 @@ class CommandServer : public Server {
   rcl_cxx::Node & node() override { return *node_; }
   std::vector<const rcl_cxx::CallbackGroup *> groups() override { return host_->groups(); }
   Robot & robot() { return *robot_; }
+  CommandHost & host() { return *host_; }
   void load_plugins() override;
   void create_actions() override;
   void start() override { robot_->start(); }

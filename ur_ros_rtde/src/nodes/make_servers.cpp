@@ -15,16 +15,6 @@ Servers make_single(const rcl_cxx::Context::SharedPtr & context)
   return servers;
 }
 
-std::shared_ptr<void> end_script(Robot & robot, const Error & why)
-{
-  auto hold = robot.hold_program();
-  const auto holder = robot.holder(Resource::mode);  // conflicts with a script
-  if (holder && holder->resource == Resource::script) {
-    robot.begin_stop({}, why);
-  }
-  return hold;
-}
-
 }  // namespace
 
 Servers make_robot_state_receiver(const rcl_cxx::Context::SharedPtr & context)
@@ -47,7 +37,7 @@ Servers make_driver(const rcl_cxx::Context::SharedPtr & context)
   auto commands = std::make_unique<CommandServer>(context);
   auto state = std::make_unique<SharedStateServer>(context, commands->robot());
   auto dashboard = std::make_unique<DashboardServer>(
-      context, [&robot = commands->robot()](const Error & why) { return end_script(robot, why); });
+      context, [&host = commands->host()](const Error & why) { return host.end_script(why); });
   Servers servers;
   servers.push_back(std::move(state));  // outlives the robot, which calls it
   servers.push_back(std::move(commands));

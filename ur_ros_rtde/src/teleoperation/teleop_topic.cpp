@@ -6,10 +6,15 @@
 #include <exception>
 #include <utility>
 
+#include "process/thread_name.hpp"
+#include "teleoperation/publisher_pause.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 
 namespace ur_ros_rtde {
 namespace {
+/// Publishers that were there before the driver are found within this time.
+constexpr std::chrono::seconds discovery_time{3};
+
 double seconds(std::chrono::steady_clock::duration duration)
 {
   return std::chrono::duration<double>(duration).count();
@@ -74,45 +79,46 @@ void TeleopTopic::close()
   }
 }
 
-void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher)
+void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info)
 {
   const auto sample = host_.robot().latest();
   bool is_interrupted = false;
+  std::uint64_t number = 0;
   {
     const std::lock_guard lock(mutex_);
-    Message next = following(std::move(target), publisher, sample);
+    Message next = following(std::move(target), info, sample);
     is_interrupted = next.session != newest_.session && !next.may_start;
+    number = next.number;
     newest_ = std::move(next);
   }
   changed_.notify_all();
   if (is_interrupted) {
-    log_(LogLevel::warn,
-         fmt::format(
-             "{}: messages are ignored: there was none for more than {:.3g} s while they moved the arm; "
-             "teleoperation starts again with a message that commands no motion: a zero twist, or "
-             "twice the same target at the position of the arm",
-             topic_, options_.timeout));
+    log_interruption(number);
   }
 }
 
-TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target,
-                                            const rcl_cxx::PublisherId & publisher,
+TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info,
                                             const std::optional<Sample> & sample) const
 {
   Message next;
   next.arrived = Clock::now();
   next.number = newest_.number + 1;
-  next.publisher = publisher;
+  next.info = info;
   const double interval = seconds(next.arrived - newest_.arrived);
-  const bool first = newest_.number == 0 || interval > options_.timeout;
+  const bool was_stopped = host_.stops() != newest_.stops;
+  const bool first =
+      newest_.number == 0 ||
+      (interval > options_.timeout && (!was_stopped || has_paused(newest_.info, info, options_.timeout)));
   next.session = newest_.session + (first ? 1 : 0);
   next.period = newest_.period;
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
-  const bool was_interrupted = newest_.moves || host_.stops() != newest_.stops;
-  const bool goes_on = target && next.moves && was_interrupted && publisher == newest_.publisher;
-  next.may_start = first ? !goes_on : newest_.may_start || !next.moves;
+  const bool was_interrupted =
+      newest_.number == 0 ? info.number != 1u && next.arrived - created_ < discovery_time
+                          : (newest_.moves || was_stopped) && info.publisher == newest_.info.publisher;
+  next.may_start =
+      first ? !(target && next.moves && was_interrupted) : newest_.may_start || !(next.moves || was_stopped);
   const bool begins = first || next.may_start != newest_.may_start;
   next.stops = begins ? host_.stops() : newest_.stops;
   next.target = std::move(target);
@@ -127,6 +133,7 @@ TeleopTopic::Message TeleopTopic::newest() const
 
 void TeleopTopic::serve(const std::stop_token & stop)
 {
+  name_thread("stream " + topic_);
   std::uint64_t served = 0;
   while (true) {
     {
@@ -245,6 +252,18 @@ void TeleopTopic::log_end(const Outcome & outcome, const Latency & latency) cons
                    "messages",
                    topic_, outcome.message(), to_string(outcome.code()), static_cast<int>(outcome.code()),
                    options_.timeout));
+}
+
+void TeleopTopic::log_interruption(std::uint64_t number) const
+{
+  const std::string why =
+      number == 1
+          ? "there were some when the driver started"
+          : fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout);
+  log_(LogLevel::warn,
+       fmt::format("{}: messages are ignored: {}; teleoperation starts with a message that commands no "
+                   "motion: a zero twist, or twice the same target at the position of the arm",
+                   topic_, why));
 }
 
 }  // namespace ur_ros_rtde

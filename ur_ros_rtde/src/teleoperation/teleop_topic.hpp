@@ -21,9 +21,12 @@ namespace ur_ros_rtde {
 /// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
-/// of `timeout`. A publisher whose last message before the pause commanded a motion, or that was stopped
-/// since, was interrupted: a hung program that goes on must not move the arm. Its next session starts with a
-/// message that commands none (TargetFollower::moves). The start and the end of each session are logged once.
+/// of `timeout`; after a stop the publisher itself has to pause (has_paused), a delay on the way or of this
+/// host is not enough. A publisher whose last message before the pause commanded a motion, or that was
+/// stopped since, was interrupted, and one that was there before this object has begun without it: neither a
+/// hung program that goes on nor a restarted driver may move the arm. Their next session starts with a
+/// message that commands no motion (TargetFollower::moves). The start and the end of each session are logged
+/// once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
@@ -35,7 +38,7 @@ class TeleopTopic {
   TeleopTopic & operator=(const TeleopTopic &) = delete;
 
   /// Called with the target of each message, or with the reason why it is invalid. Does not wait.
-  void on_message(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher);
+  void on_message(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info);
   /// Tells the session to end, if there is one, and starts no other. Returns at once.
   void stop(const Error & why);
   /// Calls stop() and joins the thread.
@@ -51,7 +54,7 @@ class TeleopTopic {
     std::uint64_t session = 0;  ///< number of the session that the message belongs to
     std::uint32_t stops = 0;    ///< CommandHost::stops() when that session could begin
     TargetPeriod period{};      ///< between messages
-    rcl_cxx::PublisherId publisher{};
+    rcl_cxx::MessageInfo info;
     bool moves = false;      ///< commands a motion
     bool may_start = false;  ///< its session, if it has not been started yet
   };
@@ -65,7 +68,7 @@ class TeleopTopic {
   };
 
   /// The message that follows the newest one.
-  Message following(Expected<StreamTarget> target, const rcl_cxx::PublisherId & publisher,
+  Message following(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info,
                     const std::optional<Sample> & sample) const;
   void serve(const std::stop_token & stop);
   Outcome run_session(std::uint64_t session, Latency & latency);
@@ -78,6 +81,8 @@ class TeleopTopic {
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
   Outcome settle(const Error & why) const;
   Message newest() const;
+  /// Logs why the messages from `number` on are ignored.
+  void log_interruption(std::uint64_t number) const;
   void log_end(const Outcome & outcome, const Latency & latency) const;
 
   const std::string topic_;
@@ -85,6 +90,7 @@ class TeleopTopic {
   const StreamOptions options_;
   const std::unique_ptr<TargetFollower> follower_;
   const LogFunction log_;
+  const Clock::time_point created_ = Clock::now();
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

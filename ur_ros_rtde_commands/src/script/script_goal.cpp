@@ -65,6 +65,7 @@ Outcome run_script_goal(const SendScriptAction::Goal & goal, GoalRun<SendScriptA
 {
   ScriptOptions options;
   options.kind = kind;
+  options.may_be_paused = true;
   options.timeout = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(timeout));
   options.on_text = [&run](const std::string & text) {
     const auto elapsed = run.elapsed();

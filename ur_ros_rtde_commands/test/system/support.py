@@ -157,16 +157,20 @@ class Simulator:
         assert answer.get("ok"), answer
         return answer
 
+    def may(self, command, **fields):
+        """Sends a command that the controller may reject. Returns whether it has accepted it."""
+        try:
+            self.control(command, **fields)
+            return True
+        except AssertionError:
+            return False
+
     def state(self):
         return self.control("state")["state"]
 
     def unlock_protective_stop(self):
         """Returns whether the controller unlocks it. The controller rejects in the first seconds of a protective stop."""
-        try:
-            self.control("unlock_protective_stop")
-            return True
-        except AssertionError:
-            return False
+        return self.may("unlock_protective_stop")
 
     def is_at_rest(self):
         """Returns whether all joints are slower than 0.01 rad/s."""

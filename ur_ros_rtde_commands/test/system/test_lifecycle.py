@@ -261,7 +261,8 @@ PROGRAM_ENDING = {
 @pytest.fixture
 def preempting(simulator, client, processes):
     """A driver with on_busy: preempt. Returns a function that starts a goal of PROGRAM_ENDING and waits until it moves the arm."""
-    processes(start_node("driver", simulator.address, "plugins:=[move_j,stop,direct_torque,send_script]", "on_busy:=preempt"))
+    plugins = "plugins:=[move_j,stop,direct_torque,send_script,dashboard/stop]"
+    processes(start_node("driver", simulator.address, plugins, "on_busy:=preempt"))
     make_ready(client)
 
     def start(name):
@@ -290,6 +291,20 @@ def test_a_goal_that_preempts_the_program_does_not_outlast_a_safeguard_stop(simu
     simulator.control("safeguard", open=False)
     assert status == GoalStatus.STATUS_ABORTED, result
     make_ready(client)
+
+
+@pytest.mark.parametrize("name", PROGRAM_ENDING)
+def test_dashboard_stop_ends_a_goal_that_waits_for_the_control_program(simulator, client, preempting, name):
+    client.send(DashboardCommand, "dashboard/stop").succeeded()  # so that the next one is sent at once
+    make_ready(client)
+    preempting(name)
+    simulator.control("remote_control", on=False)  # so that the control program is not started again
+    waiting = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.6)
+    wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 10.0, "the end of the program")
+    simulator.control("remote_control")
+    client.send(DashboardCommand, "dashboard/stop").succeeded()
+    _, result = waiting.wait_for_result()
+    assert result.error_code == ErrorCode.PREEMPTED and "the arm was stopped" in result.message, result.message
 
 
 @pytest.fixture

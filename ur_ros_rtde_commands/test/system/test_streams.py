@@ -2,6 +2,7 @@
 
 import math
 import re
+import signal
 import time
 
 import pytest
@@ -270,6 +271,52 @@ def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
         recorder = TargetRecorder(simulator)
         operator.publishes(25)
         assert recorder.update().max_tcp_speed() == 0.0
+
+
+def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
+    """The operator, whose stick is at rest, has published all the time: for the driver alone there was a pause."""
+    with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base")) as operator:
+        started = "/twist: teleoperation started"
+        before = len(log_lines(driver, started))
+        operator.publishes(3)
+        robot.send(Stop, "stop").succeeded()
+        driver.signal(signal.SIGSTOP)
+        pause()
+        driver.signal(signal.SIGCONT)
+        operator.publishes(3)
+        operator.message = lambda t: twist_message("base", -0.05)
+        recorder = TargetRecorder(simulator)
+        operator.publishes(25)
+        assert recorder.update().max_tcp_speed() == 0.0
+        assert len(log_lines(driver, started)) == before + 1, "the stop found no session"
+
+
+def test_a_stream_that_was_there_before_the_driver_moves_the_arm_only_after_a_zero_twist(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    client = Client("restarted")
+
+    def start():
+        driver = processes(start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}",
+                                      namespace="restarted"))
+        make_ready(client)
+        return driver
+
+    driver = start()
+    try:
+        with Operator(client, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
+            wait_for(lambda: max(map(abs, simulator.state()["target"]["velocity"])) > 0.03, 10.0, "the arm to move")
+            driver.stop()
+            driver = start()
+            wait_for(lambda: log_lines(driver, "messages are ignored: there were some when the driver started"), 10.0, "the warning")
+            recorder = TargetRecorder(simulator)
+            operator.publishes(25)
+            assert recorder.update().max_tcp_speed() == 0.0
+            operator.message = lambda t: twist_message("base")
+            operator.publishes(3)
+            operator.message = lambda t: twist_message("base", 0.05)
+            wait_for(lambda: max(map(abs, simulator.state()["target"]["velocity"])) > 0.03, 10.0, "the arm to move again")
+    finally:
+        client.close()
 
 
 def test_a_stop_ends_the_session_that_waits_for_the_end_of_the_one_before(addresses, processes):

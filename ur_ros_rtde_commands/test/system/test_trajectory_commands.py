@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus
 from arm_state import home_plus
 from robot_fixtures import make_ready
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, wait_for
+from support import HOME, JOINTS, Client, Simulator, start_node, wait_for
 from trajectories import TargetRecorder, distance_to_line, point, timed, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory, Stop
@@ -207,6 +207,25 @@ def test_stop_after_cancel_stops_a_gentle_motion_at_once(robot, simulator):
     cycle = at_rest["cycle"]
     wait_for(lambda: simulator.state()["cycle"] > cycle + 250, 10.0, "half a second")
     assert simulator.state()["target"]["position"] == pytest.approx(at_rest["target"]["position"], abs=1e-6), "it creeps on"
+
+
+def test_ctrl_c_after_cancel_stops_a_gentle_motion_in_time(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    driver = processes(start_node("driver", simulator.address, PLUGINS, "ur_type:=ur10e", namespace="ends"))
+    client = Client("ends")
+    try:
+        make_ready(client)
+        goal = start_gentle_motion(client, simulator)
+        goal.cancel()
+        recorder = TargetRecorder(simulator)
+        wait_for(lambda: len(recorder.update().joint_speeds) > 50, 10.0, "the motion to go on")
+        driver.interrupt()
+        _, result = goal.wait_for_result(10.0)
+        assert result.error_code == ErrorCode.CANCELED, result.message
+        assert driver.wait(15.0) == 0, driver.output()
+        assert simulator.state()["target"]["velocity"] == [0.0] * 6
+    finally:
+        client.close()
 
 
 def test_the_speed_slider_scales_the_duration(robot, simulator):

@@ -167,8 +167,9 @@ class Robot {
   /// Waits until all holders from whom a stop has taken the arm have released their leases. False after
   /// `timeout`.
   bool wait_for_stopped_holders(std::chrono::milliseconds timeout) const;
-  /// The holder of `lease` was told to end, and what it had started has been stopped. True without a lease.
-  bool is_stopped(const Lease & lease) const;
+  /// The outcome of the newest stop, once it has taken the arm out of the hands of the holder of `lease`.
+  /// Empty until then; success without a lease.
+  std::optional<Status> stopped(const Lease & lease) const;
 
   /// While it exists, the holder of the lease streams a motion that it can brake by itself. If it is told to
   /// end, it has to begin within 10 ms and to send a setpoint every 25 ms until the arm is at rest.

@@ -10,12 +10,12 @@ const char * to_string(StopMeans means)
   switch (means) {
     case StopMeans::nothing_moved:
       return "nothing moved";
+    case StopMeans::stopped_by_robot:
+      return "stopped by the robot";
     case StopMeans::stop_command:
       return "stop command";
     case StopMeans::program_stopped:
       return "program stopped";
-    case StopMeans::stopped_by_robot:
-      return "stopped by the robot";
     case StopMeans::watchdog:
       return "program stopped by its watchdog";
   }

@@ -27,6 +27,7 @@ StopOptions stronger(const StopOptions & a, const StopOptions & b)
   result.timeout =
       a.timeout && b.timeout ? std::min(*a.timeout, *b.timeout) : (a.timeout ? a.timeout : b.timeout);
   result.keep = a.keep & b.keep;
+  result.ends_foreign_program = a.ends_foreign_program || b.ends_foreign_program;
   return result;
 }
 
@@ -65,7 +66,7 @@ class MotionStopper::Beginning {
 MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver & state,
                              RtdeInterfaces & interfaces, InputRegisters & registers,
                              const MotionTracker & tracker, const StartedActivities & activities,
-                             const Arbiter & arbiter, std::function<bool()> has_left_program, LogFunction log)
+                             const Arbiter & arbiter, ProgramQueries program, LogFunction log)
     : options_(options),
       state_(state),
       interfaces_(interfaces),
@@ -73,7 +74,7 @@ MotionStopper::MotionStopper(const RobotOptions & options, const StateReceiver &
       tracker_(tracker),
       activities_(activities),
       arbiter_(arbiter),
-      has_left_program_(std::move(has_left_program)),
+      program_(std::move(program)),
       logger_(std::move(log)),
       last_(completed(StopReport{})),
       thread_([this](const std::stop_token & stop) { serve(stop); })
@@ -136,6 +137,16 @@ Stopping MotionStopper::end(Permit & holder, const StopOptions & options)
 Stopping MotionStopper::pause(const Permit & holder, const StopOptions & options)
 {
   return holder.revoked() ? current() : begin_operation(options);
+}
+
+std::optional<Status> MotionStopper::outcome(const Permit & holder) const
+{
+  const std::lock_guard lock(mutex_);
+  if (operation_ || beginning_ > 0 || !holder.revoked()) {
+    return std::nullopt;
+  }
+  const auto & last = last_.get();  // it is ready
+  return last ? Status() : tl::unexpected(last.error());
 }
 
 Stopping MotionStopper::current()

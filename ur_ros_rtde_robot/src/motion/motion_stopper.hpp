@@ -34,11 +34,15 @@ using Stopping = std::shared_future<Expected<StopReport>>;
 class MotionStopper {
  public:
   using Clock = Permit::Clock;
+  /// See ControlProgramManager.
+  struct ProgramQueries {
+    std::function<bool()> has_left_program, has_foreign_program;
+  };
 
   MotionStopper(const RobotOptions & options, const StateReceiver & state, RtdeInterfaces & interfaces,
                 InputRegisters & registers, const MotionTracker & tracker,
-                const StartedActivities & activities, const Arbiter & arbiter,
-                std::function<bool()> has_left_program, LogFunction log);
+                const StartedActivities & activities, const Arbiter & arbiter, ProgramQueries program,
+                LogFunction log);
   ~MotionStopper() { close(); }
   MotionStopper(const MotionStopper &) = delete;
   MotionStopper & operator=(const MotionStopper &) = delete;
@@ -58,6 +62,9 @@ class MotionStopper {
   void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
                std::chrono::milliseconds braking_timeout);
   bool is_stopping() const;
+  /// Of the newest stop. Empty while one is under way, and until the arm was taken out of the hands of
+  /// `holder`.
+  std::optional<Status> outcome(const Permit & holder) const;
   /// Number of programs that stops have ended.
   std::uint32_t ended_programs() const { return ended_programs_; }
   /// Waits until no stop is under way. False after `deadline` or if `stop` is requested.
@@ -110,6 +117,9 @@ class MotionStopper {
   /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost,
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
+  bool foreign_program_plays() const;
+  /// The arm is at rest by `means` once the program has ended.
+  Expected<StopMeans> end_program_that_may_go_on(StopMeans means, const StopOptions & options);
   Status end_program(const StopOptions & options);
   /// After a command that ends it. `program`: MotionTracker::View::program before; `timeout` in s.
   Status wait_for_program_end(std::uint32_t program, double timeout);
@@ -138,8 +148,8 @@ class MotionStopper {
   const MotionTracker & tracker_;
   const StartedActivities & activities_;
   const Arbiter & arbiter_;
-  const std::function<bool()> has_left_program_;  ///< see ControlProgramManager
-  ChangeLogger logger_;                           ///< stopper's thread only
+  const ProgramQueries program_;
+  ChangeLogger logger_;  ///< stopper's thread only
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -102,6 +102,7 @@ std::span<const MotionStopper::Means> MotionStopper::means()
   static constexpr std::array<Means, 3> all{{{StopMeans::stop_command, &MotionStopper::stop_by_command},
                                              {StopMeans::program_stopped, &MotionStopper::stop_by_dashboard},
                                              {StopMeans::watchdog, &MotionStopper::stop_by_watchdog}}};
+  static_assert(std::ranges::is_sorted(all, {}, &Means::means));
   return all;
 }
 
@@ -121,6 +122,9 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     const auto settled = settle(means, options);
     return settled || state_.link().connected ? report(settled) : stop_without_rtde();
   };
+  if (options.ends_foreign_program && foreign_program_plays()) {
+    return report(end_program_that_may_go_on(StopMeans::program_stopped, options));
+  }
   if (is_done(options)) {
     return at_rest(StopMeans::nothing_moved);
   }
@@ -175,16 +179,25 @@ Expected<StopReport> MotionStopper::stop_without_rtde() const
 
 Expected<StopMeans> MotionStopper::settle(StopMeans means, const StopOptions & options)
 {
-  if (!may_go_on(state_.latest().value_or(Sample{}), activities_.now())) {
-    return means;
-  }
+  return may_go_on(state_.latest().value_or(Sample{}), activities_.now())
+             ? end_program_that_may_go_on(std::max(means, StopMeans::stopped_by_robot), options)
+             : means;
+}
+
+Expected<StopMeans> MotionStopper::end_program_that_may_go_on(StopMeans means, const StopOptions & options)
+{
   if (const Status ended = end_program(options); !ended) {
     return failure(
         ErrorCode::timeout,
         fmt::format("the program has not ended and may move the arm again: stop it on the pendant ({})",
                     ended.error().message));
   }
-  return std::max(means, StopMeans::stopped_by_robot);
+  return means;
+}
+
+bool MotionStopper::foreign_program_plays() const
+{
+  return state_.latest().value_or(Sample{}).is_program_running() && program_.has_foreign_program();
 }
 
 bool MotionStopper::may_go_on(const Sample & sample, Activities started) const
@@ -195,7 +208,7 @@ bool MotionStopper::may_go_on(const Sample & sample, Activities started) const
   const bool has_ended =
       sample.runtime_state == RuntimeState::stopped || sample.runtime_state == RuntimeState::stopping;
   const bool was_interrupted = !sample.is_program_running() && !started.empty();
-  return !has_ended && (was_interrupted || has_left_program_());
+  return !has_ended && (was_interrupted || program_.has_left_program());
 }
 
 Status MotionStopper::end_program(const StopOptions & options)

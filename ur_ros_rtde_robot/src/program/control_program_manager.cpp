@@ -115,6 +115,12 @@ bool ControlProgramManager::has_left_program() const
   return state == ProgramState::ended || state == ProgramState::orphaned;
 }
 
+bool ControlProgramManager::has_foreign_program() const
+{
+  const ProgramState state = state_;
+  return state == ProgramState::foreign || state == ProgramState::idle || state == ProgramState::unclaimed;
+}
+
 std::pair<ProgramState, ProgramObservation> ControlProgramManager::snapshot() const
 {
   const std::lock_guard lock(mutex_);

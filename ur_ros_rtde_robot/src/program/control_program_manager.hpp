@@ -50,6 +50,8 @@ class ControlProgramManager {
   ControlOwner control_owner() const;
   /// A program of this driver, without a connection to it, has not been seen stopped.
   bool has_left_program() const;
+  /// A program that runs on the robot is not known to be of this driver.
+  bool has_foreign_program() const;
 
   /// To be called with each sample on the receiving thread.
   void on_sample(const Sample & sample);

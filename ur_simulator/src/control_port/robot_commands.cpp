@@ -155,9 +155,10 @@ Action store_external_control(RequestFields & fields)
   ProgramHost host;
   host.address = fields.string("host");
   host.port = static_cast<std::uint16_t>(fields.integer("port", 1, 65535, host.port));
+  const std::string next = fields.string("next", "");
   const bool load = fields.boolean("load", true);
   return [=](ControlPortContext & context) -> json {
-    context.pendant.store_program(name, {.script = "", .external_control = host});
+    context.pendant.store_program(name, {.script = next, .external_control = host});
     if (load && !context.pendant.load_program(name)) {
       throw RequestError("field 'name' is '" + name + "': it cannot be loaded");
     }
@@ -256,8 +257,10 @@ constexpr std::array robot_command_table{
     Command{"store_program", "name; script; load true|false (false)",
             "Stores a program on the controller's disk.", store_program},
     Command{"store_external_control",
-            "name (external_control.urp); host; port (50002); load true|false (true)",
-            "Stores a program of the External Control URCap, which requests its script from the host.",
+            "name (external_control.urp); host; port (50002); next (); load true|false (true)",
+            "Stores a program of the External Control URCap, which requests the script of its node from the "
+            "host; "
+            "'next' is what follows the node.",
             store_external_control},
     Command{"run_script", "script", "Runs a script as if it had been sent to a client interface.",
             run_script},

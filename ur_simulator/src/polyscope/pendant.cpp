@@ -206,21 +206,22 @@ void Pendant::play(const std::function<void(const Result &)> & done)
     return;
   }
   program_requested_ = true;
-  const ProgramHost host = *loaded->external_control;
-  request_program_(host, [this, done, host](const ProgramText & text) {
+  const StoredProgram program = *loaded;
+  request_program_(*program.external_control, [this, done, program](const ProgramText & text) {
     program_requested_ = false;
-    done(log_rejection("play", start_external_program(host, text)));
+    done(log_rejection("play", start_external_program(program, text)));
   });
 }
 
-Pendant::Result Pendant::start_external_program(const ProgramHost & host, const ProgramText & text)
+Pendant::Result Pendant::start_external_program(const StoredProgram & program, const ProgramText & text)
 {
+  const ProgramHost & host = *program.external_control;
   if (!text) {
     log_.error(pendant_source,
                fmt::format("no program from {}:{}: {}", host.address, host.port, text.error()));
   }
   const std::string body = text ? text.value() : receive_failed_popup(host, text.error());
-  return start("def external_control():\n" + body + "\nend\n");
+  return start("def external_control():\n" + body + "\n" + program.script + "\nend\n");
 }
 
 Pendant::Result Pendant::resume_or_start_program()

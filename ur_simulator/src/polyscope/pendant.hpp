@@ -120,7 +120,7 @@ class Pendant {
   Result start(std::string_view script);
   Result start(urscript::Program program, std::string_view script);
   Result resume_or_start_program();
-  Result start_external_program(const ProgramHost & host, const ProgramText & text);
+  Result start_external_program(const StoredProgram & program, const ProgramText & text);
   void log_compile_error(const urscript::CompileError & error);
   /// Logs why a script was not started.
   Result reject_script(Result reason);

@@ -14,7 +14,7 @@ struct ProgramHost {
 
 /// A program on the controller's disk.
 struct StoredProgram {
-  std::string script;
+  std::string script;                                ///< with external_control: what follows its node
   std::optional<ProgramHost> external_control = {};  ///< set: a program of the External Control URCap
   std::string document = {};     ///< the file of PolyScope X from which the script was read
   std::string description = {};  ///< PolyScope X only, like the dates

@@ -23,6 +23,8 @@ struct CommandDescription {
   CommandTraits traits;
   bool is_extension = false;
 
+  /// Its goals are served like stops.
+  bool is_stop() const { return traits.preempts_all || traits.stops_arm; }
   /// The command stops the arm and does nothing else.
   bool only_stops() const { return traits.preempts_all && !traits.allowed_in_any_state; }
   /// A goal ends when the robot can no longer move.
@@ -30,7 +32,7 @@ struct CommandDescription {
   {
     return moves_arm(traits.resource) && !traits.allowed_in_any_state && !traits.preempts_all;
   }
-  bool stops_when_client_lost() const { return host.options().stop_when_client_lost && !traits.preempts_all; }
+  bool stops_when_client_lost() const { return host.options().stop_when_client_lost && !is_stop(); }
 };
 
 /// A goal of a robot command: takes the robot, and leaves the arm at rest.
@@ -44,7 +46,7 @@ class CommandGoal : public Goal {
   Status check(std::vector<GoalQuery> & queries) final;
   void release() final;
   std::optional<Error> ended_by_robot() const final;
-  bool is_stopped() const final;
+  std::optional<Status> stopped() const final;
 
  protected:
   virtual void check_fields(Check & check) const = 0;

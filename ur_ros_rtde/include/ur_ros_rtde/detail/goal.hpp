@@ -55,8 +55,9 @@ class Goal : public std::enable_shared_from_this<Goal> {
   void stop(const Error & why);
   /// Why the robot does not let the goal go on. Its command may not look: Goals then tells the goal to end.
   virtual std::optional<Error> ended_by_robot() const { return std::nullopt; }
-  /// What moves the arm has been stopped, if the goal was told to end.
-  virtual bool is_stopped() const { return true; }
+  /// The outcome of stopping what moves the arm, if the goal was told to end. Empty while it is being
+  /// stopped.
+  virtual std::optional<Status> stopped() const { return Status(); }
   /// Sends the result without the goal's thread, which has not ended in time after stop().
   void abandon();
   /// Sends the result of a goal that is not executed.
@@ -66,7 +67,7 @@ class Goal : public std::enable_shared_from_this<Goal> {
  protected:
   /// Executes the goal. Runs in the goal's thread; may throw.
   virtual Outcome execute() = 0;
-  /// Called by stop(), once, for a goal that was accepted.
+  /// Called by stop() for a goal that was accepted: once, and again for a shutdown.
   virtual void on_stop(const Error &) {}
   /// Writes `outcome` into the result and sends it with send(). `abandoned`: execute() still runs.
   virtual void send_result(const Outcome & outcome, bool abandoned) = 0;

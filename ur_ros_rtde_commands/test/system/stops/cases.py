@@ -13,9 +13,12 @@ PROFILES: Dict[str, Tuple[str, ...]] = {
     "patient": ("silence_limit:=2.0", "watchdog_frequency:=2.0"),
     "fast": ("silence_limit:=0.1", "watchdog_frequency:=10.0"),
     "preempt": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "on_busy:=preempt"),
+    "urcap": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "control_mode:=control_urcap"),
 }
-SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0}  # s, after which a silent connection is found to be dead
+SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0, "urcap": 2.0}  # s, after which a silent connection is found to be dead
 HELD = 0.4  # of all cases
+WAITING = 0.4  # of the cases in which a goal may wait for the arm
+LOCAL = 0.12  # of the cases that are possible in local control
 LONGEST_HOLD = 0.4  # s
 # The thread of a goal is late while its program ends and the next one starts. The seeds of these cases are -1, -2, and so on.
 LATE_THREADS = [(kind, event) for kind in ("execute_trajectory", "move_j", "servo_j", "speed_j")
@@ -30,16 +33,17 @@ def profile_of(seed: int) -> str:
 class HoldPlan:
     begin: float  # s, relative to the event; negative: before it
     seconds: float
-    newest: bool  # includes the newest thread, which is that of the goal
+    mover: bool  # includes the threads of goals and of the topic that moves the arm
     count: int  # of further threads; -1: all
     seed: int  # which ones
 
-    def choose(self, threads: Sequence[Tuple[int, str]]) -> List[Tuple[int, str]]:
+    def choose(self, threads: Sequence[Tuple[int, str]], kind: GoalKind) -> List[Tuple[int, str]]:
+        """Of the threads of the driver, by number and name."""
         if self.count < 0:
             return list(threads)
         chosen = Random(self.seed).sample(list(threads), min(self.count, len(threads)))
-        newest = max(threads)
-        return [*chosen, newest] if self.newest and newest not in chosen else chosen
+        movers = [thread for thread in threads if self.mover and thread[1].startswith((f"stream /{kind.action}"[:15], "goal "))]
+        return [*chosen, *(thread for thread in movers if thread not in chosen)]
 
 
 @dataclass(frozen=True)
@@ -53,21 +57,26 @@ class Case:
     second_delay: float  # s, between the two requests of "cancel, then stop"
     stop: Dict[str, float]  # fields of a stop
     hold: Optional[HoldPlan]
+    waiting: Optional[float]  # s before the event, when a goal comes that has to preempt this one; None: there is no such goal
+    local: bool  # the operator has selected local control before the event: the driver can neither stop nor start a program
 
     def text(self) -> str:
         hold = "" if self.hold is None else (f", hold of {1e3 * self.hold.seconds:.0f} ms from {1e3 * self.hold.begin:+.0f} ms, "
                                              f"{self.hold.count if self.hold.count >= 0 else 'all'} threads"
-                                             f"{' and the newest' if self.hold.newest else ''}")
+                                             f"{' and what moves the arm' if self.hold.mover else ''}")
         after = "motion" if self.waits_for_motion else "acceptance"
-        return f"{self.kind.name}, {self.event.name} {1e3 * self.delay:.0f} ms after {after}, {self.profile}{hold}"
+        waiting = "" if self.waiting is None else f", a goal that preempts it {1e3 * self.waiting:.0f} ms before the event"
+        local = ", local control" if self.local else ""
+        return f"{self.kind.name}, {self.event.name} {1e3 * self.delay:.0f} ms after {after}, {self.profile}{waiting}{local}{hold}"
 
 
 def is_possible(kind: GoalKind, event: Event, profile: str) -> bool:
     if event.profile and event.profile != profile:
         return False
     if kind.is_topic:  # no goal that could be canceled, preempted or lose its client
-        return not (event.needs_client or event.name in ("preempted", "cancel, then stop"))
-    return not (event.name == "preempted" and kind.name in HAND_GUIDED)
+        return not (event.needs_client or event.name == "preempted" or event.name.startswith("cancel, then"))
+    waits_for_play = event.name == "program paused" and kind.name == "send_script"
+    return not waits_for_play and not (event.name == "preempted" and kind.name in HAND_GUIDED)
 
 
 def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
@@ -82,7 +91,10 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     second_delay = random.uniform(0.0, 0.3)
     stop = {"joint_deceleration": random.uniform(1.5, 8.0), "linear_deceleration": random.uniform(1.0, 6.0)}
     hold = _hold(random)
-    case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold)
+    may_wait = profile == "preempt" and event.ends_waiting and kind.name not in HAND_GUIDED
+    waiting = random.uniform(0.0, 0.4) if random.random() < WAITING and may_wait else None
+    local = random.random() < LOCAL and event.in_local_control and waiting is None
+    case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold, waiting, local)
     if seed < 0:
         case = _with_late_thread(case, kinds, *LATE_THREADS[-seed - 1])
     return case if holds else replace(case, hold=None)
@@ -91,10 +103,10 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
 def _with_late_thread(case: Case, kinds: Sequence[GoalKind], kind: str, event: str) -> Case:
     return replace(case, kind=next(known for known in kinds if known.name == kind),
                    event=next(known for known in EVENTS if known.name == event), waits_for_motion=True,
-                   hold=HoldPlan(begin=-0.02, seconds=LONGEST_HOLD, newest=True, count=0, seed=0))
+                   hold=HoldPlan(begin=-0.02, seconds=LONGEST_HOLD, mover=True, count=0, seed=0))
 
 
 def _hold(random: Random) -> Optional[HoldPlan]:
     plan = HoldPlan(begin=random.uniform(-0.1, 0.1), seconds=random.uniform(0.001, LONGEST_HOLD) ** random.choice((1.0, 1.5)),
-                    newest=random.random() < 0.4, count=random.choice((1, 1, 1, 2, 4, 8, -1)), seed=random.randrange(2**32))
+                    mover=random.random() < 0.4, count=random.choice((1, 1, 1, 2, 4, 8, -1)), seed=random.randrange(2**32))
     return plan if random.random() < HELD else None

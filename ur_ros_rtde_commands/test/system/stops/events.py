@@ -29,6 +29,8 @@ class Event:
     profile: str = ""  # the only one in which it occurs
     has_result: bool = True
     is_silent: bool = False  # is noticed after the silence_limit
+    ends_waiting: bool = True  # also ends a goal that waits for the arm
+    in_local_control: bool = True  # possible there
 
 
 def _cancel(lane) -> int:
@@ -41,8 +43,15 @@ def _stop(lane) -> int:
 
 def _cancel_then_stop(lane) -> int:
     when = lane.running.cancel()
-    lane.sleep_until(when + lane.case.second_delay)
+    lane.sleep_until(when + 1e9 * lane.case.second_delay)
     lane.send_in_executor(Stop, "stop", **lane.case.stop)
+    return when
+
+
+def _cancel_then_interrupt(lane) -> int:
+    when = lane.running.cancel()
+    lane.sleep_until(when + 1e9 * lane.case.second_delay)
+    lane.driver.signal(signal.SIGINT)
     return when
 
 
@@ -70,6 +79,15 @@ def _stop_program(lane) -> int:
         return when if lane.simulator.control("stop_program")["program"] == "PLAYING" else 0
 
     return wait_for(pressed, 2.0, "a program to stop")
+
+
+def _pause_program(lane) -> int:
+    """Presses the button until it pauses a program."""
+    def pressed() -> int:
+        when = lane.now()
+        return when if lane.simulator.may("pause_program") else 0
+
+    return wait_for(pressed, 2.0, "a program to be paused")
 
 
 def _play_another_program(lane) -> int:
@@ -125,29 +143,41 @@ def _end_stall(lane) -> None:
     lane.simulator.control("stall_links", stalled=False)
 
 
+def _press_play(lane) -> None:
+    """Unless the driver has ended the paused program, and perhaps started its own."""
+    if lane.simulator.state()["program"]["state"] == "PAUSED":
+        lane.simulator.may("play")
+
+
 def _restart_driver(lane) -> None:
     lane.restart_driver()
 
 
 EVENTS = (
-    Event("cancel", _cancel, 22.0, BEGIN_LIMIT, asks="goal", keeps_program=True),
+    Event("cancel", _cancel, 22.0, BEGIN_LIMIT, asks="goal", keeps_program=True, ends_waiting=False),
     Event("stop", _stop, 20.0, BEGIN_LIMIT, asks="stop", keeps_program=True),
-    Event("cancel, then stop", _cancel_then_stop, 8.0, BEGIN_LIMIT, keeps_program=True),
+    Event("cancel, then stop", _cancel_then_stop, 8.0, BEGIN_LIMIT, keeps_program=True, ends_waiting=False),
     Event("STOP of the page", _page_stop, 5.0, BEGIN_LIMIT, keeps_program=True),
-    Event("dashboard stop", _dashboard_stop, 5.0),
-    Event("preempted", _preempt, 40.0, BEGIN_LIMIT, asks="goal", keeps_program=True, profile="preempt"),
+    Event("dashboard stop", _dashboard_stop, 5.0, in_local_control=False),
+    Event("preempted", _preempt, 40.0, BEGIN_LIMIT, asks="goal", keeps_program=True, profile="preempt", ends_waiting=False,
+          in_local_control=False),
     Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock),
     Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
     Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
     Event("program stopped", _stop_program, 5.0, BEGIN_LIMIT),
-    Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT),
+    Event("program paused", _pause_program, 5.0, BEGIN_LIMIT, recover=_press_play),
+    Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT, in_local_control=False),
     Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0),
     Event("RTDE links dropped", _control("drop_links", which="rtde"), 3.0),
     Event("all links dropped", _control("drop_links", which="all"), 2.0),
     Event("links stalled", _control("stall_links", which="rtde"), 3.0, rest_limit=3.5, recover=_end_stall, is_silent=True),
-    Event("client exits", _end_client("exit"), 1.5, rest_limit=1.5, asks="goal", keeps_program=True, needs_client="exit"),
-    Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill"),
+    Event("client exits", _end_client("exit"), 1.5, rest_limit=1.5, asks="goal", keeps_program=True, needs_client="exit",
+          ends_waiting=False),
+    Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill",
+          ends_waiting=False),
     Event("driver interrupted", _signal(signal.SIGINT), 0.8, rest_limit=2.0, recover=_restart_driver, ends_driver=True),
+    Event("cancel, then Ctrl-C", _cancel_then_interrupt, 0.8, rest_limit=2.5, recover=_restart_driver, ends_driver=True,
+          ends_waiting=False),
     Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_restart_driver, ends_driver=True,
           has_result=False),
 )

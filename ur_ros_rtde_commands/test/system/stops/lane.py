@@ -7,6 +7,7 @@ import argparse
 import json
 import os
 import pathlib
+import socket
 import sys
 import time
 import traceback
@@ -84,6 +85,7 @@ class Lane:
         self.running = None
         self._others: list = []  # goals of the event itself
         self.preempting_goal = None  # the goal that has preempted the one of the case
+        self.waiting_goal = None  # the goal that waited for the arm when the event came
 
     def _plugins(self) -> Dict[str, str]:
         """Returns the environment in which the driver finds the plugins that are built with the tests."""
@@ -125,6 +127,11 @@ class Lane:
         self.preempting_goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
         return when
 
+    def _send_waiting_goal(self) -> None:
+        self.waiting_goal = self.client.send(MoveJ, "move_j", joint_positions=goal_kinds.home_plus(0.8), speed=0.5)
+        if not self.waiting_goal.accepted:
+            raise AssertionError(f"the goal that preempts was rejected: {self.client.rejection(self.waiting_goal).message}")
+
     def take_client(self):
         client = self._spare or running.start_client(self._env)
         self._spare = None
@@ -142,12 +149,19 @@ class Lane:
     # --- The driver ---
 
     def restart_driver(self, profile: str = "") -> None:
+        """With the URCap, what follows its node in the program of the operator moves the arm: it must not be reached."""
         if self.driver is not None:
             self.driver.stop()
             # Until then, the client sends its requests to the driver that has ended.
             wait_for(lambda: not self.client.sees("move_j"), DISCOVERY_LIMIT, "the driver to disappear")
         self._profile = profile or self._profile
-        self.driver = start_node("driver", self._address, "ur_type:=ur10e", *PROFILES[self._profile], env=self._env)
+        parameters = PROFILES[self._profile]
+        if self._profile == "urcap":
+            port = unused_port()
+            parameters = (*parameters, f"urcap_port:={port}")
+            next_motion = f"movej({goal_kinds.home_plus(0.3)}, a=5, v=1)"
+            self.simulator.control("store_external_control", host="127.0.0.1", port=port, next=next_motion)
+        self.driver = start_node("driver", self._address, "ur_type:=ur10e", *parameters, env=self._env)
         self._move_home(30.0)
 
     def _move_home(self, limit: float, accepts_at_once: bool = False) -> List[str]:
@@ -156,6 +170,7 @@ class Lane:
 
         def has_moved():
             assert self.driver.running(), "the driver has exited"
+            self._play()
             goal = self.client.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0)
             if not goal.accepted:
                 rejection = self.client.rejection(goal)
@@ -174,6 +189,11 @@ class Lane:
 
         wait_for(has_moved, limit, "the driver to move the arm home")
         return violations[:3]
+
+    def _play(self) -> None:
+        """With the URCap, the operator starts the program when it is stopped."""
+        if self._profile == "urcap" and self.simulator.state()["program"]["state"] == "STOPPED":
+            self.simulator.may("play")
 
     # --- A case ---
 
@@ -200,7 +220,7 @@ class Lane:
         return report
 
     def _execute(self, case: Case, report: Report) -> None:
-        self.case, self._others, self.preempting_goal, self.holds = case, [], None, None
+        self.case, self._others, self.preempting_goal, self.waiting_goal, self.holds = case, [], None, None, None
         self.page.clear()
         self._stalls = self._measure_stalls()
         for action, kind, fields in case.kind.before:
@@ -233,6 +253,7 @@ class Lane:
         """A stall of the host between two cases may have ended the control program, which is then started again."""
 
         def has_succeeded():
+            self._play()
             goal = self.client.send_goal(kind, action, messages.fill(kind.Goal(), fields))
             if not goal.accepted:
                 return time.sleep(RETRY_INTERVAL)
@@ -242,7 +263,9 @@ class Lane:
         wait_for(has_succeeded, READY_LIMIT, f"the driver to accept {action}")
 
     def _on_rejection(self, rejection, report: Report) -> None:
-        """The robot was ready before. A stall of the host may have interrupted its connection."""
+        """The robot was ready before. A stall of the host may have interrupted its connection. With the URCap, there are no scripts."""
+        if rejection.error_code == ErrorCode.NOT_SUPPORTED and self._profile == "urcap":
+            return
         report.stall = self._stalls.seconds()
         lost = rejection.error_code in (ErrorCode.LINK_LOST, ErrorCode.NOT_READY, ErrorCode.PROGRAM_STOPPED)
         found = report.excused if lost and report.stall > properties.LONG_STALL else report.violations
@@ -253,6 +276,11 @@ class Lane:
             self._wait_for_motion()
         at = self.now() + int(1e9 * case.delay)
         self._prepare_hold(case, at)
+        if case.waiting is not None:
+            self.sleep_until(at - int(1e9 * case.waiting))
+            self._send_waiting_goal()
+        if case.local:
+            self.simulator.control("remote_control", on=False)
         self.sleep_until(at)
         self._stalls = self._measure_stalls()
         self.when = case.event.cause(self)
@@ -265,7 +293,8 @@ class Lane:
     def _prepare_hold(self, case: Case, at: int) -> None:
         self.held_threads = []
         if case.hold is not None and self._holder is not None:
-            self.held_threads = case.hold.choose(threads_of(self.driver.pid))
+            self.held_threads = case.hold.choose(threads_of(self.driver.pid), case.kind)
+            assert self.held_threads, "there is no thread that moves the arm"
             self.holds = self._holder.request([thread for thread, _name in self.held_threads], at + int(1e9 * case.hold.begin),
                                               case.hold.seconds)
 
@@ -290,13 +319,15 @@ class Lane:
         if self.preempting_goal is not None:
             self.preempting_goal.succeeded()
             self.client.forget(self.preempting_goal)
-        keeps = case.event.keeps_program and case.hold is None and not self.page.fell_back()
+        keeps = self._keeps_program(case) and case.hold is None and not self.page.fell_back()
         report.violations += self._move_home(READY_LIMIT, keeps and report.stall < properties.LONG_STALL)
         report.ready = 1e-9 * (self._accepted - self.when)
 
     def _wait_for_results(self, case: Case, report: Report, checks: "properties.Checks") -> None:
         if case.event.has_result:
-            checks.code, checks.message, checks.result_at = self.running.wait_for_result()
+            checks.result_at = self.running.wait_for_result()
+            if self.waiting_goal is not None:
+                checks.result_at = max(checks.result_at, self._end_of_waiting_goal(report))
             checks.stall_until_result = self._stalls.seconds()
             problem = self.running.check_single_result()
             report.violations += [problem] if problem else []
@@ -307,6 +338,15 @@ class Lane:
         report.violations += self.page.wait(case.hold is not None or report.stall > properties.LONG_STALL)
         if self.holds is not None:
             checks.hold = self.holds.wait()
+
+    def _end_of_waiting_goal(self, report: Report) -> int:
+        goal = self.waiting_goal
+        status, result = goal.wait_for_result(running.RESULT_TIMEOUT)
+        states = self.client.get_terminal_states(goal)
+        self.client.forget(goal)
+        if result.success or states != {status}:
+            report.violations.append(f"the goal that waited has the result {result.message}, the final states {states}")
+        return goal.result_at
 
     def _quiet(self, case: Case, checks: "properties.Checks") -> None:
         if checks.hold is not None:
@@ -320,15 +360,22 @@ class Lane:
         self.running.close()
         if case.event.recover is not None and not case.event.ends_driver:
             case.event.recover(self)
-        if not case.event.keeps_program and not case.event.ends_driver:
+        if case.local:
+            self.sleep_until(self.now() + QUIET)
+            self.simulator.control("remote_control", on=True)
+        if not self._keeps_program(case) and not case.event.ends_driver:
             self._wait_until_program_runs()
         self.sleep_until(self.now() + QUIET)
         after = self.simulator.state()["actual"]["position"]
         checks.drift = max(abs(a - b) for a, b in zip(before, after))
 
+    def _keeps_program(self, case: Case) -> bool:
+        return case.event.keeps_program and case.waiting is None and not case.local and case.profile != "urcap"
+
     def _wait_until_program_runs(self) -> None:
         """The driver starts its program again: from now on, an old goal could use it."""
         def runs():
+            self._play()
             state = self.simulator.state()
             return state["program"]["state"] == "PLAYING" and state["clients"]["rtde_control"] > 0
 
@@ -348,6 +395,12 @@ class Lane:
                   *self.driver.lines[first_line:]]
         lines += properties.describe(self)
         (self._log / f"case_{case.seed}.txt").write_text("\n".join(lines) + "\n")
+
+
+def unused_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
 
 
 def case_random(case: Case) -> Random:

@@ -3,8 +3,8 @@
 Always: the arm comes to rest, within the time of the deceleration after the limit of the event, or after the end of a hold; it does
 not move again; the goal has one result, within 1 s of the standstill; the lease is free, and the next goal works.
 
-Without a hold: the deceleration begins within the limit of the event, and is the one that was asked for. These two limits are excused
-if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream of
+Without a hold and a goal that waits: the deceleration begins within the limit of the event, and is the one that was asked for. These two
+limits are excused if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream of
 setpoints that is late slows down: its decelerations are excused beside STALL_OF_A_STOP.
 """
 
@@ -20,6 +20,7 @@ from .motion import CYCLE
 
 RESULT_LIMIT = 1.0 * TIMEOUT_FACTOR  # s of the host, after the standstill
 HELD_REST_LIMIT = 1.2  # s of the robot, after the end of a hold: the driver may have lost the connection, or the watchdog has to act
+LOCAL_LIMIT = 4.0  # s, more in local control, where the driver tries to stop the program before it uses the watchdog
 MODE_REST_LIMIT = 0.8  # s, more for what the driver does not decelerate along a path: the end of a mode, a braking arm
 TOLERANCE = 0.12  # of a deceleration
 LONG_STALL = 0.01  # s
@@ -36,7 +37,6 @@ class Checks:
     def __init__(self, lane, case, report):
         self._lane, self._case, self._report = lane, case, report
         self.hold = None
-        self.code, self.message = 0, ""
         self.result_at: Optional[int] = None
         self.drift = 0.0
         self.stall_until_result = 0.0
@@ -55,7 +55,7 @@ class Checks:
         self._report.latency, self._report.standstill = stopping.latency, stopping.duration
         self._rest(trace, stopping)
         self._result(trace, stopping)
-        if self._case.hold is None:
+        if self._case.hold is None and self._case.waiting is None:
             self._begin(trace, stopping)
             self._deceleration(trace, stopping)
 
@@ -76,6 +76,7 @@ class Checks:
         if self.drift > MAX_DRIFT:
             self._violation(f"the arm drifts by {self.drift:.4f} rad after the stop")
         limit = self._case.event.rest_limit + self._decelerating_time(trace, stopping.event) + self._stall_until_rest
+        limit += LOCAL_LIMIT if self._case.local else 0.0
         if self.hold is not None:
             limit = max(limit, CYCLE * (trace.index(self.hold["end"]) - stopping.event) + HELD_REST_LIMIT
                         + self._decelerating_time(trace, stopping.event))
@@ -87,7 +88,7 @@ class Checks:
             return
         begin = max(self._lane.when, trace.published[min(stopping.rest, trace.length() - 1)], self.hold["end"] if self.hold else 0)
         self._report.result = round(1e-9 * (self.result_at - begin), 4)
-        limit = RESULT_LIMIT + self._time_to_notice()
+        limit = RESULT_LIMIT + self._time_to_notice() + (LOCAL_LIMIT if self._case.local else 0.0)
         if self._report.result > limit:
             self._limit_exceeded(f"the result comes {self._report.result:.3f} s after the standstill", self._report.result - limit,
                                  self._stall_until_rest)
@@ -155,7 +156,8 @@ class Checks:
     def _decelerating_time(self, trace: motion.Trace, event: int) -> float:
         """s, an upper bound."""
         joint, tcp = (max(speeds) for speeds in zip(*trace.speeds[max(0, event - 1):event + 12]))
-        if self._brakes_along_path() or self._case.event.name == "cancel, then stop" and self._case.kind.space == PATH:
+        may_brake_along_path = self._case.event.name == "cancel, then stop" or self._case.waiting is not None
+        if self._brakes_along_path() or may_brake_along_path and self._case.kind.space == PATH:
             acceleration, jerk = self._case.kind.limits(self._lane.fields)
             peak = joint + 0.5 * acceleration**2 / jerk
             return 1.3 * (peak / acceleration + 3.0 * acceleration / jerk) + 0.1

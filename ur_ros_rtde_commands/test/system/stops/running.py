@@ -45,9 +45,9 @@ class RunningGoal:
         return self._goal.is_finished()
 
     def wait_for_result(self):
-        """Returns the error code, the message, and when they came, ns since the epoch."""
-        _status, result = self._goal.wait_for_result(RESULT_TIMEOUT)
-        return result.error_code, getattr(result, "message", getattr(result, "error_string", "")), self._goal.result_at
+        """Returns when it came, ns since the epoch."""
+        self._goal.wait_for_result(RESULT_TIMEOUT)
+        return self._goal.result_at
 
     def check_single_result(self):
         status, _result = self._goal.wait_for_result(RESULT_TIMEOUT)
@@ -85,7 +85,7 @@ class ForeignGoal:
         goal_id = UUID(uuid=list(bytes.fromhex(self._answer.split()[1])))
         answer = self._lane.client.call(service, f"{self._kind.action}/_action/get_result", limit=RESULT_TIMEOUT, goal_id=goal_id)
         self._result = answer.status
-        return answer.result.error_code, getattr(answer.result, "message", ""), time.time_ns()
+        return time.time_ns()
 
     def check_single_result(self):
         return "" if self._result in TERMINAL else f"the goal has the status {self._result}"
@@ -171,7 +171,7 @@ class RunningTopic:
         return False
 
     def wait_for_result(self):
-        return 0, "", time.time_ns()
+        return time.time_ns()
 
     def check_single_result(self):
         return ""

@@ -27,10 +27,11 @@ struct MotionProgress {
 };
 
 /// What stopped the arm, from the gentlest to the strongest means.
+/// In the order in which a stop takes them: docs/use/goals.md, "Means of a stop".
 enum class StopMeans {
   nothing_moved,     ///< the arm was at rest and nothing was started
-  stop_command,      ///< the control program decelerated the arm as requested
   stopped_by_robot,  ///< a protective, safeguard or emergency stop, or the end of its program
+  stop_command,      ///< the control program decelerated the arm as requested
   program_stopped,   ///< the program was stopped through the dashboard server; the controller decelerated the
                      ///< arm
   watchdog,          ///< the heartbeat was ended; the watchdog of the program stopped it
@@ -47,6 +48,8 @@ struct StopOptions {
   std::optional<std::chrono::milliseconds> timeout;
   /// Modes that stay on.
   Activities keep;
+  /// Ends also a program that is not the driver's and plays, even while it stands: it may move the arm again.
+  bool ends_foreign_program = false;
   bool operator==(const StopOptions &) const = default;
 };
 

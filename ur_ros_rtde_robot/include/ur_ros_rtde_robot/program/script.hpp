@@ -37,6 +37,9 @@ struct ScriptOptions {
   ScriptKind kind = ScriptKind::program;
   /// Time from sending the script to its end: at least 1 ms; at most 10 s for a secondary program.
   std::chrono::milliseconds timeout = std::chrono::minutes(10);
+  /// A program that is paused, on the pendant, by the dashboard or by a blocking `popup`, is waited for, and
+  /// may go on. Otherwise it is ended. After a safety stop, it always is.
+  bool may_be_paused = false;
   /// Called every few milliseconds in the calling thread: the reason to stop the script early, if there is
   /// one. In a command: `[&run] { return run.stop_reason(); }`.
   std::function<std::optional<Error>()> stop_reason;

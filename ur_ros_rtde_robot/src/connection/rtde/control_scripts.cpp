@@ -94,7 +94,8 @@ std::string ControlScripts::program(const ControllerVersion & version) const
   if (!script) {
     throw std::runtime_error(fmt::format("line {}: {}", script.error().line, script.error().message));
   }
-  return script->text.text();
+  // What follows its node in the program of the URCap might move the arm.
+  return script->text.text() + "halt\n";
 }
 
 Expected<int> ControlScripts::id(const std::string & name) const

@@ -25,7 +25,8 @@ class ControlScripts {
   /// The script for this controller without an enclosing `def`, with version markers and register offset
   /// resolved. Empty if there are no extensions.
   std::string text(const ControllerVersion & version) const;
-  /// Like text(), but also without extensions. Throws std::runtime_error.
+  /// Like text(), but also without extensions, and at its end, the program ends to which it was added: for
+  /// the External Control URCap. Throws std::runtime_error.
   std::string program(const ControllerVersion & version) const;
   /// The number that triggers the extension; not_supported with the reason if it was omitted.
   Expected<int> id(const std::string & name) const;

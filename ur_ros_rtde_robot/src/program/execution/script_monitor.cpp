@@ -297,8 +297,26 @@ bool ScriptMonitor::complete_if_it_must_stop()
     if (const auto blocker = motion_blocker(*sample)) {
       return complete(ScriptEnd::robot_stopped, blocker->code, blocker->message);
     }
+    if (!options_.may_be_paused && is_paused(*sample)) {
+      return complete(ScriptEnd::robot_stopped, ErrorCode::program_stopped,
+                      "the program was paused on the pendant or by the dashboard, which ends it");
+    }
   }
   return complete_if_told(ScriptEnd::interrupted) || complete_if_late();
+}
+
+/// A safety stop pauses the program, too, and is told by its own bits.
+bool ScriptMonitor::is_paused(const Sample & sample)
+{
+  const bool pauses =
+      sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused;
+  if (!has_played_ || !pauses) {
+    pause_seen_.reset();
+    return false;
+  }
+  const auto now = Clock::now();
+  pause_seen_ = pause_seen_.value_or(now);
+  return now - *pause_seen_ > max_skew;
 }
 
 bool ScriptMonitor::complete_if_told(ScriptEnd end)

@@ -51,6 +51,7 @@ class ScriptMonitor {
   /// By ScriptOptions::stop_reason.
   bool complete_if_told(ScriptEnd end);
   bool complete_if_late();
+  bool is_paused(const Sample & sample);
 
   void on_message(const PrimaryMessage & message);
   void on_text(const std::string & text);
@@ -70,7 +71,7 @@ class ScriptMonitor {
   bool ended_before_begin_ = false;
   bool messages_left_ = false;  ///< read_messages() has not reached the newest message
   Clock::time_point sent_{};
-  std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, stop_seen_;
+  std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, pause_seen_, stop_seen_;
   std::string replaced_by_;
   PrimaryMessage error_{};
   std::string error_code_;  ///< with its text, of the newest violation or fault since the script began
