@@ -167,7 +167,8 @@ EVENTS = (
     Event("program stopped", _stop_program, 5.0, BEGIN_LIMIT),
     Event("program paused", _pause_program, 5.0, BEGIN_LIMIT, recover=_press_play),
     Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT, in_local_control=False),
-    Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0),
+    Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0,
+          ends_waiting=False),  # the driver ends the program, and starts it for the goal that waits
     Event("RTDE links dropped", _control("drop_links", which="rtde"), 3.0),
     Event("all links dropped", _control("drop_links", which="all"), 2.0),
     Event("links stalled", _control("stall_links", which="rtde"), 3.0, rest_limit=3.5, recover=_end_stall, is_silent=True),

@@ -162,6 +162,8 @@ class Lane:
             next_motion = f"movej({goal_kinds.home_plus(0.3)}, a=5, v=1)"
             self.simulator.control("store_external_control", host="127.0.0.1", port=port, next=next_motion)
         self.driver = start_node("driver", self._address, "ur_type:=ur10e", *parameters, env=self._env)
+        if self._profile == "urcap":
+            self.driver.wait_for_output("start the program with the External Control node", 30.0)
         self._move_home(30.0)
 
     def _move_home(self, limit: float, accepts_at_once: bool = False) -> List[str]:

@@ -104,6 +104,8 @@ class Checks:
         limit = self._case.event.begin_limit
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
+        if self._case.local and self._case.kind.deceleration(self._lane.fields) is None:
+            return  # its program can only be ended by the watchdog
         if stopping.latency > limit + 0.5 * CYCLE:
             stall = self._stall if stopping.latency < WINDOW_CYCLES * CYCLE else self._stall_until_rest
             self._limit_exceeded(f"the deceleration begins {1e3 * stopping.latency:.0f} ms after the event", stopping.latency - limit,
