@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "process/thread_name.hpp"
+#include "ur_ros_rtde/detail/thread_name.hpp"
 
 namespace ur_ros_rtde {
 

@@ -6,8 +6,8 @@
 #include <exception>
 #include <utility>
 
-#include "process/thread_name.hpp"
 #include "teleoperation/publisher_pause.hpp"
+#include "ur_ros_rtde/detail/thread_name.hpp"
 #include "ur_ros_rtde_robot/connection/realtime_priority.hpp"
 
 namespace ur_ros_rtde {
