@@ -128,6 +128,14 @@ TEST(PublisherPauseTest, IsATimeWithoutMessages)
   EXPECT_TRUE(has_paused(published_at(1.0, 7), other, timeout)) << "another publisher";
 }
 
+TEST(PublisherPauseTest, KnowsWhetherAPublisherHasBegunSince)
+{
+  const std::chrono::system_clock::time_point time{std::chrono::seconds(10)};
+  EXPECT_TRUE(has_begun_since(published_at(10.5, 3), published_at(10.52, 4), time));
+  EXPECT_FALSE(has_begun_since(published_at(10.5, 50), published_at(10.52, 51), time));
+  EXPECT_FALSE(has_begun_since(published_at(10.5), published_at(10.52), time)) << "they are not counted";
+}
+
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)
 {
   const auto follower = follow_twists({});

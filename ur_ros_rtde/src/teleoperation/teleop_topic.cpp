@@ -83,17 +83,19 @@ void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::Messa
 {
   const auto sample = host_.robot().latest();
   bool is_interrupted = false;
-  std::uint64_t number = 0;
+  bool was_there = false;
   {
     const std::lock_guard lock(mutex_);
     Message next = following(std::move(target), info, sample);
-    is_interrupted = next.session != newest_.session && !next.may_start;
-    number = next.number;
+    was_there = next.session == 1;
+    // With the second message of a publisher that counts them, it is known whether the first was its first.
+    const bool is_known = was_there && info.number ? next.number == 2 : next.session != newest_.session;
+    is_interrupted = is_known && !next.may_start;
     newest_ = std::move(next);
   }
   changed_.notify_all();
   if (is_interrupted) {
-    log_interruption(number);
+    log_interruption(was_there);
   }
 }
 
@@ -115,10 +117,11 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
   const bool was_interrupted =
-      newest_.number == 0 ? info.number != 1u && next.arrived - created_ < discovery_time
+      newest_.number == 0 ? info.number != 1u && std::chrono::system_clock::now() - created_ < discovery_time
                           : (newest_.moves || was_stopped) && info.publisher == newest_.info.publisher;
-  next.may_start =
-      first ? !(target && next.moves && was_interrupted) : newest_.may_start || !(next.moves || was_stopped);
+  const bool is_new = newest_.number == 1 && !was_stopped && has_begun_since(newest_.info, info, created_);
+  next.may_start = first ? !(target && next.moves && was_interrupted)
+                         : newest_.may_start || is_new || !(next.moves || was_stopped);
   const bool begins = first || next.may_start != newest_.may_start;
   next.stops = begins ? host_.stops() : newest_.stops;
   next.target = std::move(target);
@@ -254,10 +257,10 @@ void TeleopTopic::log_end(const Outcome & outcome, const Latency & latency) cons
                    options_.timeout));
 }
 
-void TeleopTopic::log_interruption(std::uint64_t number) const
+void TeleopTopic::log_interruption(bool was_there) const
 {
   const std::string why =
-      number == 1
+      was_there
           ? "there were some when the driver started"
           : fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout);
   log_(LogLevel::warn,

@@ -81,8 +81,8 @@ class TeleopTopic {
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
   Outcome settle(const Error & why) const;
   Message newest() const;
-  /// Logs why the messages from `number` on are ignored.
-  void log_interruption(std::uint64_t number) const;
+  /// Logs why messages are ignored. `was_there`: the publisher, before this object.
+  void log_interruption(bool was_there) const;
   void log_end(const Outcome & outcome, const Latency & latency) const;
 
   const std::string topic_;
@@ -90,7 +90,7 @@ class TeleopTopic {
   const StreamOptions options_;
   const std::unique_ptr<TargetFollower> follower_;
   const LogFunction log_;
-  const Clock::time_point created_ = Clock::now();
+  const std::chrono::system_clock::time_point created_ = std::chrono::system_clock::now();
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

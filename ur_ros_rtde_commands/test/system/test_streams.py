@@ -275,10 +275,10 @@ def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
 
 def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
     """The operator, whose stick is at rest, has published all the time: for the driver alone there was a pause."""
+    started = "/twist: teleoperation started"
+    before = len(log_lines(driver, started))
     with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base")) as operator:
-        started = "/twist: teleoperation started"
-        before = len(log_lines(driver, started))
-        operator.publishes(3)
+        wait_for(lambda: len(log_lines(driver, started)) > before, 10.0, "the session")
         robot.send(Stop, "stop").succeeded()
         driver.signal(signal.SIGSTOP)
         pause()
@@ -288,7 +288,7 @@ def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
         recorder = TargetRecorder(simulator)
         operator.publishes(25)
         assert recorder.update().max_tcp_speed() == 0.0
-        assert len(log_lines(driver, started)) == before + 1, "the stop found no session"
+        assert len(log_lines(driver, started)) == before + 1, "a session has begun after the stop"
 
 
 def test_a_stream_that_was_there_before_the_driver_moves_the_arm_only_after_a_zero_twist(addresses, processes):
