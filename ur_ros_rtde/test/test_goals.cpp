@@ -100,23 +100,37 @@ TEST_F(GoalTest, IsCanceled)
   EXPECT_EQ(end.result.error_code, static_cast<std::uint16_t>(ErrorCode::canceled));
 }
 
-/// A command that never looks: its result does not stay away, and its thread does no harm.
-TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
+/// With a command that never looks.
+class HangingGoalTest : public GoalTest {
+ protected:
+  HangingGoalTest()
+  {
+    behavior_.execute = [this](const StopRequest &) {
+      returns_.get_future().wait();
+      return Outcome::success("too late");
+    };
+  }
+  /// The future result of a goal that was canceled.
+  auto cancel_a_goal()
+  {
+    serve();
+    const auto goal = send_and_go_on();
+    EXPECT_TRUE(goal);
+    EXPECT_EQ(goal->async_cancel().get().code, rcl_cxx::CancelCode::none);
+    return goal->async_get_result();
+  }
+
+  std::promise<void> returns_;
+};
+
+/// Its result does not stay away, and its thread does no harm.
+TEST_F(HangingGoalTest, IsEndedIfItsCommandDoesNotReturn)
 {
-  std::promise<void> returns;
   std::atomic<bool> at_rest{false};
   std::atomic<int> released{0};
   behavior_.stopped = [&] { return at_rest ? std::make_optional(Status()) : std::nullopt; };
   behavior_.release = [&] { ++released; };
-  behavior_.execute = [&](const StopRequest &) {
-    returns.get_future().wait();
-    return Outcome::success("too late");
-  };
-  serve();
-  const auto goal = send_and_go_on();
-  ASSERT_TRUE(goal);
-  EXPECT_EQ(goal->async_cancel().get().code, rcl_cxx::CancelCode::none);
-  auto end = goal->async_get_result();
+  auto end = cancel_a_goal();
   EXPECT_EQ(end.wait_for(Goals::return_timeout + milliseconds(200)), std::future_status::timeout)
       << "not before the arm is at rest";
   at_rest = true;
@@ -124,41 +138,27 @@ TEST_F(GoalTest, IsEndedIfItsCommandDoesNotReturn)
   EXPECT_EQ(end.get().status, rcl_cxx::GoalStatus::canceled);
   EXPECT_NE(end.get().result.message.find("did not return"), std::string::npos) << end.get().result.message;
   EXPECT_EQ(released, 1);
-  returns.set_value();
+  returns_.set_value();
 }
 
-TEST_F(GoalTest, SaysIfItsCommandDoesNotReturnAndTheArmDoesNotRest)
+TEST_F(HangingGoalTest, SaysIfTheArmDoesNotRest)
 {
-  std::promise<void> returns;
   behavior_.stopped = [] { return failure(ErrorCode::timeout, "all attempts have failed"); };
-  behavior_.execute = [&](const StopRequest &) {
-    returns.get_future().wait();
-    return Outcome::success("too late");
-  };
-  serve();
-  const auto goal = send_and_go_on();
-  ASSERT_TRUE(goal);
-  EXPECT_EQ(goal->async_cancel().get().code, rcl_cxx::CancelCode::none);
-  auto end = goal->async_get_result();
+  auto end = cancel_a_goal();
   EXPECT_EQ(end.wait_for(seconds(20)), std::future_status::ready);
-  returns.set_value();
+  returns_.set_value();
   const std::string message = end.get().result.message;
   EXPECT_NE(message.find("standstill is not confirmed: all attempts have failed"), std::string::npos)
       << message;
 }
 
 /// No client tells the goal to end, and its command does not look at the robot.
-TEST_F(GoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
+TEST_F(HangingGoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
 {
-  std::promise<void> returns;
   std::atomic<bool> stopped{false};
   behavior_.ended_by_robot = [&] {
     return stopped ? std::make_optional(Error{ErrorCode::protective_stop, "a protective stop"})
                    : std::nullopt;
-  };
-  behavior_.execute = [&](const StopRequest &) {
-    returns.get_future().wait();
-    return Outcome::success("too late");
   };
   serve();
   const auto goal = send_and_go_on();
@@ -166,7 +166,7 @@ TEST_F(GoalTest, IsEndedIfTheRobotHasStoppedAndItsCommandDoesNotLook)
   stopped = true;
   auto end = goal->async_get_result();
   EXPECT_EQ(end.wait_for(seconds(10)), std::future_status::ready);
-  returns.set_value();
+  returns_.set_value();
   EXPECT_EQ(end.get().status, rcl_cxx::GoalStatus::aborted);
   EXPECT_EQ(end.get().result.error_code, static_cast<std::uint16_t>(ErrorCode::protective_stop));
 }

@@ -128,12 +128,11 @@ TEST(PublisherPauseTest, IsATimeWithoutMessages)
   EXPECT_TRUE(has_paused(published_at(1.0, 7), other, timeout)) << "another publisher";
 }
 
-TEST(PublisherPauseTest, KnowsWhetherAPublisherHasBegunSince)
+TEST(PublisherPauseTest, KnowsForHowLongAPublisherHasPublished)
 {
-  const std::chrono::system_clock::time_point time{std::chrono::seconds(10)};
-  EXPECT_TRUE(has_begun_since(published_at(10.5, 3), published_at(10.52, 4), time));
-  EXPECT_FALSE(has_begun_since(published_at(10.5, 50), published_at(10.52, 51), time));
-  EXPECT_FALSE(has_begun_since(published_at(10.5), published_at(10.52), time)) << "they are not counted";
+  EXPECT_NEAR(age_of_publisher(published_at(10.5, 3), published_at(10.52, 4)).value(), 0.06, 1e-6);
+  EXPECT_NEAR(age_of_publisher(published_at(10.5, 50), published_at(10.54, 52)).value(), 1.02, 1e-6);
+  EXPECT_FALSE(age_of_publisher(published_at(10.5), published_at(10.52))) << "they are not counted";
 }
 
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)

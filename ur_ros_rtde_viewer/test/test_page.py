@@ -25,7 +25,7 @@ from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 BROWSER = True
 MEASURES_TIME = True
 PRESSES = 5  # of STOP
-REFUSALS = 10  # messages of a held button
+REJECTIONS = 10  # messages of a held button
 STREAM_TIMEOUT = 1.0  # s; allows for the slow rendering of a browser without a GPU
 
 
@@ -255,7 +255,7 @@ def test_the_page_knows_the_stream_timeout_of_the_driver(viewer):
 
 
 @pytest.fixture
-def refusals(viewer, monkeypatch):
+def rejections(viewer, monkeypatch):
     """The reasons why messages of a jog button do not move the arm, in their order."""
     jog = jog_of(viewer)
     hold, reasons = jog.hold, []
@@ -273,7 +273,7 @@ PAUSE_OF_THE_BROWSER = "end => { for (end += performance.now(); performance.now(
 
 
 @pytest.mark.parametrize("of_the_page", [True, False])
-def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, robot, simulator, refusals, of_the_page):
+def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, robot, simulator, rejections, of_the_page):
     tab.open("Jog")
     with tab.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move")
@@ -282,9 +282,9 @@ def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, ro
         position = simulator.state()["actual"]["position"]
         tab.page.evaluate(PAUSE_OF_THE_BROWSER, 2e3 * STREAM_TIMEOUT)
         tab.wait_for_text(STOPPED)
-        number = len(refusals) + REFUSALS
-        until(lambda: len(refusals) >= number, "further messages of the button")
-        assert set(refusals) == {STOPPED} and simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-4)
+        number = len(rejections) + REJECTIONS
+        until(lambda: len(rejections) >= number, "further messages of the button")
+        assert set(rejections) == {STOPPED} and simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-4)
     with tab.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move after the release of the button")
     until(lambda: not is_moving(simulator), "the arm to stop")

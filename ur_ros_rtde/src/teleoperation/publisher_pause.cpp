@@ -4,26 +4,28 @@
 
 namespace ur_ros_rtde {
 
-bool has_paused(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next, double timeout)
+namespace {
+/// s, between messages of one publisher, as it published them. `next` may follow after others that were lost.
+double mean_interval(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next)
 {
-  if (before.publisher != next.publisher) {
-    return true;
-  }
   const bool is_counted = before.number && next.number && *next.number > *before.number;
   const double sent = is_counted ? static_cast<double>(*next.number - *before.number) : 1.0;
-  return std::chrono::duration<double>(next.published - before.published).count() / sent > timeout;
+  return std::chrono::duration<double>(next.published - before.published).count() / sent;
+}
+}  // namespace
+
+bool has_paused(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next, double timeout)
+{
+  return before.publisher != next.publisher || mean_interval(before, next) > timeout;
 }
 
-bool has_begun_since(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next,
-                     std::chrono::system_clock::time_point time)
+std::optional<double> age_of_publisher(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next)
 {
   if (before.publisher != next.publisher || !before.number || !next.number ||
       *next.number <= *before.number) {
-    return false;
+    return std::nullopt;
   }
-  const std::chrono::duration<double> interval = next.published - before.published;
-  const auto period = interval / static_cast<double>(*next.number - *before.number);
-  return next.published - static_cast<double>(*next.number - 1) * period > time;
+  return static_cast<double>(*next.number - 1) * mean_interval(before, next);
 }
 
 }  // namespace ur_ros_rtde

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <chrono>
+#include <optional>
 #include <rcl_cxx/subscription.hpp>
 
 namespace ur_ros_rtde {
@@ -11,9 +11,10 @@ namespace ur_ros_rtde {
 /// not sent.
 bool has_paused(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next, double timeout);
 
-/// Returns whether the publisher of both has published its first message after `time`, if it has a fixed
-/// rate: the first messages are lost if they come before the discovery. False without numbers of messages.
-bool has_begun_since(const rcl_cxx::MessageInfo & before, const rcl_cxx::MessageInfo & next,
-                     std::chrono::system_clock::time_point time);
+/// Returns for how long, in s, the publisher of both has published when it published `next`, if it has a
+/// fixed rate: its first messages are lost if they come before the discovery. Empty without numbers of
+/// messages.
+std::optional<double> age_of_publisher(const rcl_cxx::MessageInfo & before,
+                                       const rcl_cxx::MessageInfo & next);
 
 }  // namespace ur_ros_rtde

@@ -117,9 +117,10 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
   const bool was_interrupted =
-      newest_.number == 0 ? info.number != 1u && std::chrono::system_clock::now() - created_ < discovery_time
+      newest_.number == 0 ? info.number != 1u && next.arrived - created_ < discovery_time
                           : (newest_.moves || was_stopped) && info.publisher == newest_.info.publisher;
-  const bool is_new = newest_.number == 1 && !was_stopped && has_begun_since(newest_.info, info, created_);
+  const auto age = age_of_publisher(newest_.info, info);
+  const bool is_new = newest_.number == 1 && !was_stopped && age && *age < seconds(next.arrived - created_);
   next.may_start = first ? !(target && next.moves && was_interrupted)
                          : newest_.may_start || is_new || !(next.moves || was_stopped);
   const bool begins = first || next.may_start != newest_.may_start;

@@ -90,7 +90,7 @@ class TeleopTopic {
   const StreamOptions options_;
   const std::unique_ptr<TargetFollower> follower_;
   const LogFunction log_;
-  const std::chrono::system_clock::time_point created_ = std::chrono::system_clock::now();
+  const Clock::time_point created_ = Clock::now();
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -146,7 +146,7 @@ DASHBOARD_PORT = 29999
 PORT_BEHIND = 29998  # of the simulator's dashboard server
 
 
-class RefusesToStop(socketserver.StreamRequestHandler):
+class RejectsStop(socketserver.StreamRequestHandler):
     """Passes everything on to the dashboard server of the simulator, but `stop`."""
 
     def handle(self):
@@ -168,7 +168,7 @@ class DashboardProxy(socketserver.ThreadingTCPServer):
 def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes):
     """Without a watchdog, only the dashboard server could end the script."""
     simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), RefusesToStop) as proxy:
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), RejectsStop) as proxy:
         threading.Thread(target=proxy.serve_forever, daemon=True).start()
         driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "watchdog_frequency:=0.0",
                                       "plugins:=[move_j,send_script,stand_down]", namespace="unstoppable"))

@@ -25,7 +25,8 @@ CYCLE = 2_000_000 / REAL_TIME_FACTOR  # ns of the host's time
 
 @pytest.fixture(scope="module")
 def driver(simulator):
-    driver = start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}")
+    driver = start_node("driver", simulator.address, FEW_PLUGINS, "ur_type:=ur10e", f"stream_timeout:={TIMEOUT}",
+                        "watchdog_frequency:=1.0")  # the program outlasts a stall of more than TIMEOUT
     yield driver
     driver.stop()
     print(driver.output())
@@ -249,18 +250,24 @@ class Operator:
         published = len(self._publisher.times)
         wait_for(lambda: len(self._publisher.times) >= published + count, 10.0, "messages")
 
+    def does_not_move_the_arm(self, simulator):
+        recorder = TargetRecorder(simulator)
+        self.publishes(25)
+        assert recorder.update().max_tcp_speed() == 0.0
+
+    def moves_the_arm_only_after_a_zero_twist(self, simulator):
+        self.does_not_move_the_arm(simulator)
+        self.message = lambda t: twist_message("base")
+        self.publishes(3)
+        self.message = lambda t: twist_message("base", 0.05)
+        wait_for(lambda: max(map(abs, simulator.state()["target"]["velocity"])) > 0.03, 10.0, "the arm to move again")
+
 
 def test_a_publisher_that_hung_during_a_motion_moves_the_arm_only_after_a_zero_twist(robot, driver, simulator):
     with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base", -0.05)) as operator:
         wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
         operator.hangs_and_goes_on()
-        recorder = TargetRecorder(simulator)
-        operator.publishes(25)
-        assert recorder.update().max_tcp_speed() == 0.0
-        operator.message = lambda t: twist_message("base")
-        operator.publishes(3)
-        operator.message = lambda t: twist_message("base", 0.05)
-        wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move again")
+        operator.moves_the_arm_only_after_a_zero_twist(simulator)
 
 
 def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
@@ -268,9 +275,7 @@ def test_a_gap_in_the_messages_does_not_undo_a_stop(robot, driver, simulator):
         wait_for(lambda: get_joint_speed(robot) > 0.03, 10.0, "the arm to move")
         robot.send(Stop, "stop").succeeded()
         operator.hangs_and_goes_on()
-        recorder = TargetRecorder(simulator)
-        operator.publishes(25)
-        assert recorder.update().max_tcp_speed() == 0.0
+        operator.does_not_move_the_arm(simulator)
 
 
 def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
@@ -285,9 +290,7 @@ def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
         driver.signal(signal.SIGCONT)
         operator.publishes(3)
         operator.message = lambda t: twist_message("base", -0.05)
-        recorder = TargetRecorder(simulator)
-        operator.publishes(25)
-        assert recorder.update().max_tcp_speed() == 0.0
+        operator.does_not_move_the_arm(simulator)
         assert len(log_lines(driver, started)) == before + 1, "a session has begun after the stop"
 
 
@@ -308,13 +311,7 @@ def test_a_stream_that_was_there_before_the_driver_moves_the_arm_only_after_a_ze
             driver.stop()
             driver = start()
             wait_for(lambda: log_lines(driver, "messages are ignored: there were some when the driver started"), 10.0, "the warning")
-            recorder = TargetRecorder(simulator)
-            operator.publishes(25)
-            assert recorder.update().max_tcp_speed() == 0.0
-            operator.message = lambda t: twist_message("base")
-            operator.publishes(3)
-            operator.message = lambda t: twist_message("base", 0.05)
-            wait_for(lambda: max(map(abs, simulator.state()["target"]["velocity"])) > 0.03, 10.0, "the arm to move again")
+            operator.moves_the_arm_only_after_a_zero_twist(simulator)
     finally:
         client.close()
 
@@ -337,9 +334,7 @@ def test_a_stop_ends_the_session_that_waits_for_the_end_of_the_one_before(addres
             operator.publishes(3)
             assert get_joint_speed(client) > 0.02, "the previous session has ended too early for this test"
             client.send(Stop, "stop").succeeded()
-            recorder = TargetRecorder(simulator)
-            operator.publishes(25)
-            assert recorder.update().max_tcp_speed() == 0.0
+            operator.does_not_move_the_arm(simulator)
     finally:
         client.close()
 

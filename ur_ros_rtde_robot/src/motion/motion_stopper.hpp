@@ -95,6 +95,8 @@ class MotionStopper {
     Status (MotionStopper::*attempt)(const StopOptions & options);
   };
   static std::span<const Means> means();
+  /// s of the controller, from the end of a program, or a safety stop, to the standstill.
+  static constexpr double program_stop_timeout = 1.5;
   /// Until its end, no claim is granted.
   class Beginning;
 

@@ -44,7 +44,7 @@ class RobotControl:
             self.view.services.call(GetParameters, "command_server/get_parameters", self._on_parameters, names=["stream_timeout"])
 
     def _on_parameters(self, response: Optional[Any], _reason: str) -> None:
-        if response is not None:
+        if response is not None and response.values and response.values[0].double_value > 0.0:  # 0.0: unknown there
             self.jog.set_stream_timeout(response.values[0].double_value)
 
     def close(self) -> None:

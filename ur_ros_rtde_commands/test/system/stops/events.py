@@ -41,18 +41,14 @@ def _stop(lane) -> int:
     return lane.send_in_executor(Stop, "stop", **lane.case.stop)
 
 
-def _cancel_then_stop(lane) -> int:
-    when = lane.running.cancel()
-    lane.sleep_until(when + 1e9 * lane.case.second_delay)
-    lane.send_in_executor(Stop, "stop", **lane.case.stop)
-    return when
+def _cancel_then(request: Callable[[Any], int]) -> Callable[[Any], int]:
+    def cause(lane) -> int:
+        when = lane.running.cancel()
+        lane.sleep_until(when + 1e9 * lane.case.second_delay)
+        lane.second_request = request(lane)
+        return when
 
-
-def _cancel_then_interrupt(lane) -> int:
-    when = lane.running.cancel()
-    lane.sleep_until(when + 1e9 * lane.case.second_delay)
-    lane.driver.signal(signal.SIGINT)
-    return when
+    return cause
 
 
 def _dashboard_stop(lane) -> int:
@@ -72,22 +68,24 @@ def _control(command: str, **fields: Any) -> Callable[[Any], int]:
     return cause
 
 
-def _stop_program(lane) -> int:
-    """Presses the button until it stops a program: between the control program and a script, there is none."""
-    def pressed() -> int:
-        when = lane.now()
-        return when if lane.simulator.control("stop_program")["program"] == "PLAYING" else 0
+def _press(button: Callable[[Any], bool]) -> Callable[[Any], int]:
+    """Presses the button until there is a program that obeys: between the control program and a script, there is none."""
+    def cause(lane) -> int:
+        def pressed() -> int:
+            when = lane.now()
+            return when if button(lane.simulator) else 0
 
-    return wait_for(pressed, 2.0, "a program to stop")
+        return wait_for(pressed, 2.0, "a program that obeys")
+
+    return cause
 
 
-def _pause_program(lane) -> int:
-    """Presses the button until it pauses a program."""
-    def pressed() -> int:
-        when = lane.now()
-        return when if lane.simulator.may("pause_program") else 0
+def _stop_button(simulator) -> bool:
+    return simulator.control("stop_program")["program"] == "PLAYING"
 
-    return wait_for(pressed, 2.0, "a program to be paused")
+
+def _pause_button(simulator) -> bool:
+    return simulator.may("pause_program")
 
 
 def _play_another_program(lane) -> int:
@@ -156,7 +154,7 @@ def _restart_driver(lane) -> None:
 EVENTS = (
     Event("cancel", _cancel, 22.0, BEGIN_LIMIT, asks="goal", keeps_program=True, ends_waiting=False),
     Event("stop", _stop, 20.0, BEGIN_LIMIT, asks="stop", keeps_program=True),
-    Event("cancel, then stop", _cancel_then_stop, 8.0, BEGIN_LIMIT, keeps_program=True, ends_waiting=False),
+    Event("cancel, then stop", _cancel_then(_stop), 8.0, BEGIN_LIMIT, keeps_program=True, ends_waiting=False),
     Event("STOP of the page", _page_stop, 5.0, BEGIN_LIMIT, keeps_program=True),
     Event("dashboard stop", _dashboard_stop, 5.0, in_local_control=False),
     Event("preempted", _preempt, 40.0, BEGIN_LIMIT, asks="goal", keeps_program=True, profile="preempt", ends_waiting=False,
@@ -164,8 +162,8 @@ EVENTS = (
     Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock),
     Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
     Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
-    Event("program stopped", _stop_program, 5.0, BEGIN_LIMIT),
-    Event("program paused", _pause_program, 5.0, BEGIN_LIMIT, recover=_press_play),
+    Event("program stopped", _press(_stop_button), 5.0, BEGIN_LIMIT),
+    Event("program paused", _press(_pause_button), 5.0, BEGIN_LIMIT, recover=_press_play),
     Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT, in_local_control=False),
     Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0,
           ends_waiting=False),  # the driver ends the program, and starts it for the goal that waits
@@ -177,7 +175,7 @@ EVENTS = (
     Event("client killed", _end_client("kill"), 0.5, rest_limit=6.0, asks="goal", keeps_program=True, needs_client="kill",
           ends_waiting=False),
     Event("driver interrupted", _signal(signal.SIGINT), 0.8, rest_limit=2.0, recover=_restart_driver, ends_driver=True),
-    Event("cancel, then Ctrl-C", _cancel_then_interrupt, 0.8, rest_limit=2.5, recover=_restart_driver, ends_driver=True,
+    Event("cancel, then Ctrl-C", _cancel_then(_signal(signal.SIGINT)), 0.8, rest_limit=2.5, recover=_restart_driver, ends_driver=True,
           ends_waiting=False),
     Event("driver killed", _signal(signal.SIGKILL), 0.5, rest_limit=1.5, recover=_restart_driver, ends_driver=True,
           has_result=False),

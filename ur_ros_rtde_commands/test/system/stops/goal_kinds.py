@@ -52,6 +52,7 @@ class GoalKind:
     around: Callable[[Scene], Sequence[Mapping[str, Any]]] = lambda _scene: ()  # commands for the simulator, once the goal is accepted
     is_topic: bool = False
     source: str = ""  # topic of the poses that the goal follows
+    runs_script: bool = False  # in place of the control program: not with the URCap; in local control, only the watchdog ends it
     turns: bool = False  # the base joint leads: a stop of the TCP decelerates its rotation, in rad/s^2
     package: str = "ur_ros_rtde_commands"
     limits: Callable[[Fields], Tuple[float, float]] = lambda _fields: (1.4, 100.0)  # of PATH: acceleration, jerk
@@ -268,9 +269,9 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_l", "move_l", PACKAGE + "MoveL", _move_l, weight=1.5),
     GoalKind("move_l_fk", "move_l_fk", PACKAGE + "MoveLFK", _move_l_fk, turns=True),
     GoalKind("move_l_relative", "move_l_relative", PACKAGE + "MoveLRelative", _move_l_relative),
-    GoalKind("move_p", "move_p", PACKAGE + "MoveP", _move_p, deceleration=_unspecified),
-    GoalKind("move_c", "move_c", PACKAGE + "MoveC", _move_c, deceleration=_unspecified),
-    GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified),
+    GoalKind("move_p", "move_p", PACKAGE + "MoveP", _move_p, deceleration=_unspecified, runs_script=True),
+    GoalKind("move_c", "move_c", PACKAGE + "MoveC", _move_c, deceleration=_unspecified, runs_script=True),
+    GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified, runs_script=True),
     GoalKind("speed_j", "speed_j", PACKAGE + "SpeedJ", _speed_j, JOINT, _own),
     GoalKind("speed_l", "speed_l", PACKAGE + "SpeedL", _speed_l, LINEAR, _own),
     GoalKind("jog", "jog", PACKAGE + "Jog", _jog),
@@ -286,7 +287,8 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("follow_joint_trajectory", "follow_joint_trajectory", "control_msgs/action/FollowJointTrajectory", _follow, PATH,
              limits=lambda _fields: (5.0, 100.0), turns=True),
     GoalKind("move_until_force", "move_until_force", PACKAGE + "MoveUntilForce", _until_force, LINEAR, _own),
-    GoalKind("move_until_contact", "move_until_contact", PACKAGE + "MoveUntilContact", _until_contact, deceleration=_unspecified),
+    GoalKind("move_until_contact", "move_until_contact", PACKAGE + "MoveUntilContact", _until_contact, deceleration=_unspecified,
+             runs_script=True),
     GoalKind("move_until_torque", "move_until_torque", PACKAGE + "MoveUntilForce", _until_force, LINEAR, _own),
     GoalKind("force_mode", "force_mode", PACKAGE + "ForceMode", _force_mode, MODE, _unspecified),
     GoalKind("move_j in force mode", "move_j", PACKAGE + "MoveJ", _move_j, JOINT,
@@ -294,7 +296,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("freedrive", "freedrive", PACKAGE + "Freedrive", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
     GoalKind("teach_mode", "teach_mode", PACKAGE + "TeachMode", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
     GoalKind("direct_torque", "direct_torque", PACKAGE + "DirectTorque", _torque, MODE, _unspecified),
-    GoalKind("send_script", "send_script", PACKAGE + "SendScript", _script, JOINT, _unspecified),
+    GoalKind("send_script", "send_script", PACKAGE + "SendScript", _script, JOINT, _unspecified, runs_script=True),
     GoalKind("move_down_until_force", "move_down_until_force", f"{TUTORIALS}/action/MoveDownUntilForce", _down, package=TUTORIALS),
     GoalKind("spiral_search", "spiral_search", f"{TUTORIALS}/action/SpiralSearch", _spiral, MODE, _unspecified, package=TUTORIALS),
     GoalKind("insert_peg", "insert_peg", f"{TUTORIALS}/action/InsertPeg", _insert, MODE, _unspecified, around=_plate, package=TUTORIALS),

@@ -223,6 +223,7 @@ class Lane:
 
     def _execute(self, case: Case, report: Report) -> None:
         self.case, self._others, self.preempting_goal, self.waiting_goal, self.holds = case, [], None, None, None
+        self.second_request: Optional[int] = None  # of an event that has two, ns since the epoch
         self.page.clear()
         self._stalls = self._measure_stalls()
         for action, kind, fields in case.kind.before:
@@ -265,9 +266,7 @@ class Lane:
         wait_for(has_succeeded, READY_LIMIT, f"the driver to accept {action}")
 
     def _on_rejection(self, rejection, report: Report) -> None:
-        """The robot was ready before. A stall of the host may have interrupted its connection. With the URCap, there are no scripts."""
-        if rejection.error_code == ErrorCode.NOT_SUPPORTED and self._profile == "urcap":
-            return
+        """The robot was ready before. A stall of the host may have interrupted its connection."""
         report.stall = self._stalls.seconds()
         lost = rejection.error_code in (ErrorCode.LINK_LOST, ErrorCode.NOT_READY, ErrorCode.PROGRAM_STOPPED)
         found = report.excused if lost and report.stall > properties.LONG_STALL else report.violations

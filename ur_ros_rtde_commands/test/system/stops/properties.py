@@ -76,7 +76,7 @@ class Checks:
         if self.drift > MAX_DRIFT:
             self._violation(f"the arm drifts by {self.drift:.4f} rad after the stop")
         limit = self._case.event.rest_limit + self._decelerating_time(trace, stopping.event) + self._stall_until_rest
-        limit += LOCAL_LIMIT if self._case.local else 0.0
+        limit += LOCAL_LIMIT if self._only_the_watchdog_ends_it() else 0.0
         if self.hold is not None:
             limit = max(limit, CYCLE * (trace.index(self.hold["end"]) - stopping.event) + HELD_REST_LIMIT
                         + self._decelerating_time(trace, stopping.event))
@@ -104,12 +104,14 @@ class Checks:
         limit = self._case.event.begin_limit
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
-        if self._case.local and self._case.kind.deceleration(self._lane.fields) is None:
-            return  # its program can only be ended by the watchdog
-        if stopping.latency > limit + 0.5 * CYCLE:
+        if self._only_the_watchdog_ends_it():
+            return
+        latency = stopping.latency
+        if self._case.kind.space == PATH and self._lane.second_request is not None:  # it may brake along its path until then
+            latency -= CYCLE * (trace.index(self._lane.second_request) - stopping.event)
+        if latency > limit + 0.5 * CYCLE:
             stall = self._stall if stopping.latency < WINDOW_CYCLES * CYCLE else self._stall_until_rest
-            self._limit_exceeded(f"the deceleration begins {1e3 * stopping.latency:.0f} ms after the event", stopping.latency - limit,
-                                 stall)
+            self._limit_exceeded(f"the deceleration begins {1e3 * latency:.0f} ms after the event", latency - limit, stall)
 
     def _deceleration(self, trace: motion.Trace, stopping: motion.Stopping) -> None:
         if self._case.event.needs_client:
@@ -130,6 +132,9 @@ class Checks:
                                  STALL_OF_A_STOP if may_be_excused else math.inf, self._stall_until_rest)
 
     # --- What was asked for ---
+
+    def _only_the_watchdog_ends_it(self) -> bool:
+        return self._case.local and self._case.kind.runs_script
 
     def _brakes_along_path(self) -> bool:
         return self._case.kind.space == PATH and self._case.event.asks == "goal"
