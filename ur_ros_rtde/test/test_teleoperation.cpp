@@ -130,9 +130,11 @@ TEST(PublisherPauseTest, IsATimeWithoutMessages)
 
 TEST(PublisherPauseTest, KnowsForHowLongAPublisherHasPublished)
 {
-  EXPECT_NEAR(age_of_publisher(published_at(10.5, 3), published_at(10.52, 4)).value(), 0.06, 1e-6);
-  EXPECT_NEAR(age_of_publisher(published_at(10.5, 50), published_at(10.54, 52)).value(), 1.02, 1e-6);
-  EXPECT_FALSE(age_of_publisher(published_at(10.5), published_at(10.52))) << "they are not counted";
+  constexpr double shortest = 0.1;
+  EXPECT_NEAR(age_of_publisher(published_at(10.5, 3), published_at(10.6, 8), shortest).value(), 0.14, 1e-6);
+  EXPECT_NEAR(age_of_publisher(published_at(10.5, 50), published_at(10.7, 60), shortest).value(), 1.18, 1e-6);
+  EXPECT_FALSE(age_of_publisher(published_at(10.5, 50), published_at(10.501, 51), shortest)) << "a burst";
+  EXPECT_FALSE(age_of_publisher(published_at(10.5), published_at(10.6), shortest)) << "they are not counted";
 }
 
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "connection/rtde/control_scripts.hpp"
 #include "robot_fixture.hpp"
 #include "ur_ros_rtde_robot/script/script_extension.hpp"
 
@@ -170,6 +169,47 @@ TEST_F(ExtensionsTest, FailWhenTheirConnectionIsLost)
   EXPECT_TRUE(at_rest());
 }
 
+/// Without a connection, nothing clears the trigger, and the extension goes on.
+TEST_F(ExtensionsTest, AreStoppedIfTheirConnectionStaysLost)
+{
+  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
+  double begin = 0.0;
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    if (begin == 0.0 && robot->latest()->actual_qd[0] > 0.28) {
+      controller.control({{"command", "refuse_connections"}, {"which", "rtde"}});
+      controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
+      begin = robot->latest()->controller_time;
+    }
+    return std::nullopt;
+  };
+  const Status ended = run_extension("turn", options);
+  const double duration = robot->latest()->controller_time - begin;
+  controller.control({{"command", "accept_connections"}, {"which", "rtde"}});
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, ErrorCode::link_lost) << ended.error().message;
+  EXPECT_NE(ended.error().message.find("the IO connection was lost"), std::string::npos)
+      << ended.error().message;
+  EXPECT_LT(duration, 5.0);
+  EXPECT_TRUE(at_rest());
+}
+
+TEST_F(ExtensionsTest, FailIfTheirTriggerIsLost)
+{
+  start_with({extension("wait", "sync()\n")});
+  const double begin = robot->latest()->controller_time;
+  // The trigger is cleared before it is set.
+  controller.control({{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "io"}, {"count", 2}});
+  const Status ended = run_extension("wait");
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, ErrorCode::timeout);
+  EXPECT_NE(ended.error().message.find("has not begun the extension wait"), std::string::npos)
+      << ended.error().message;
+  EXPECT_LT(robot->latest()->controller_time - begin, 5.0);
+  ASSERT_TRUE(eventually([&] { return static_cast<bool>(robot->ready_to_move()); })) << log.text();
+  EXPECT_TRUE(run_extension("wait")) << log.text();
+}
+
 TEST_F(ExtensionsTest, EndWithTheReasonOfAStopThatTheirCallerDoesNotNotice)
 {
   start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
@@ -210,21 +250,20 @@ TEST_F(ExtensionsTest, ModesEndWithOneThatHasFinished)
   }
 }
 
-TEST(ExtensionVersionTest, EarlyControllersDoNotKnowTheEndOfFreedrive)
+/// Such as the mode of a command that runs the extension.
+TEST_F(ExtensionsTest, DoNotEndAModeThatTheyDoNotStart)
 {
-  ScriptExtension wait;
-  wait.name = "wait";
-  wait.snippet = "sync()\n";
-  ControlScripts scripts(false);
-  ASSERT_TRUE(scripts.set({wait}).empty());
-  const auto knows = [&](unsigned major, unsigned minor) {
-    const std::string text = scripts.text({.major = major, .minor = minor});
-    EXPECT_NE(text.find("end_teach_mode()\n    end\n"), std::string::npos) << "the end of an extension";
-    return text.find("end_freedrive_mode()") != std::string::npos;
-  };
-  EXPECT_FALSE(knows(3, 15));
-  EXPECT_FALSE(knows(5, 9));
-  EXPECT_TRUE(knows(5, 10));
+  start_with({extension("wait", "sync()\n"), extension("guide", "freedrive_mode()\n")});
+  Claim switching = claim();
+  switching.switches_hand_guiding = true;
+  const auto lease = robot->acquire(switching);
+  ASSERT_TRUE(lease);
+  ASSERT_TRUE(robot->control(*lease)->freedriveMode());
+  ASSERT_TRUE(eventually([&] { return is_on("freedrive"); }));
+  EXPECT_TRUE(robot->run_extension(*lease, "wait")) << log.text();
+  EXPECT_TRUE(is_on("freedrive"));
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_FALSE(is_on("freedrive"));
 }
 
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
@@ -239,6 +278,7 @@ TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
 }
 
 struct ContactDetectionTest : RobotFixture {
+  static inline const std::vector<double> down{0.0, 0.0, -1.0, 0.0, 0.0, 0.0};
   int threads() { return controller.state().at("program").at("threads").get<int>(); }
 };
 
@@ -247,6 +287,29 @@ TEST_F(ContactDetectionTest, NeedsALease)
   make_both();
   EXPECT_THROW(robot->control_for_queries()->startContactDetection(), std::logic_error);
   EXPECT_TRUE(control()->startContactDetection());
+}
+
+TEST_F(ContactDetectionTest, IsAnActivityUntilItIsStopped)
+{
+  make_both();
+  EXPECT_TRUE(control()->startContactDetection(down));
+  EXPECT_EQ(robot->activities(), Activities(Activity::contact_detection));
+  EXPECT_FALSE(control()->stopContactDetection()) << "there was no contact";
+  EXPECT_TRUE(robot->activities().empty());
+}
+
+/// Otherwise, a contact would stop the motion of the next goal.
+TEST_F(ContactDetectionTest, EndsWithAStopOfAnArmAtRest)
+{
+  make_both();
+  const int before = threads();
+  ASSERT_TRUE(control()->startContactDetection(down));
+  ASSERT_TRUE(eventually([&] { return threads() == before + 1; })) << threads();
+  const auto generation = robot->generation();
+  ASSERT_TRUE(robot->stop_motion());
+  EXPECT_TRUE(eventually([&] { return threads() == before; })) << threads();
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_TRUE(robot->is_current(generation)) << "the control program goes on";
 }
 
 /// A contact after the stop would move the arm.

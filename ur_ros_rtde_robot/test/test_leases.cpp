@@ -391,6 +391,23 @@ TEST_F(LeaseTest, AHolderThatBrakesForTooLongIsStopped)
   EXPECT_TRUE(eventually([&] { return at_rest(); }));
 }
 
+/// As the shutdown of the driver after a cancel.
+TEST_F(LeaseTest, ALaterRequestShortensTheStopUnderWay)
+{
+  const Lease lease = acquire();
+  move(lease);
+  StopOptions gentle;
+  gentle.joint_deceleration = 0.1;
+  robot->request_stop(lease, gentle, Error{ErrorCode::canceled, "canceled"}, 10s);
+  ASSERT_TRUE(eventually([&] { return robot->is_stopping(); }));
+  const double begin = robot->latest()->controller_time;
+  StopOptions hurried = gentle;
+  hurried.timeout = 200ms;
+  robot->request_stop(lease, hurried, Error{ErrorCode::shutdown, "shutting down"}, 200ms);
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  EXPECT_LT(robot->latest()->controller_time - begin, 2.5) << "0.8 rad/s at 0.1 rad/s^2 take 8 s";
+}
+
 TEST_F(LeaseTest, AStopTakesTheArmFromAHolderThatBrakesByItself)
 {
   const Lease lease = acquire();

@@ -6,6 +6,7 @@
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_text.hpp>
+#include <utility>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/dashboard_run.hpp"
@@ -96,7 +97,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
                                     : tl::unexpected(*check.error());
     if (ready && command_.stops_program()) {
-      hold_ = host_.end_script(stopped_through_dashboard(name()));
+      ended_script_ = host_.end_script(stopped_through_dashboard(name()));
     }
     return ready;
   }
@@ -104,7 +105,8 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   {
     run_.emplace(host_.connection(), shared_stop_request(),
                  [this](const void * feedback) { handle().publish_feedback(feedback); });
-    const auto hold = std::move(hold_);
+    const auto ended_script = std::exchange(ended_script_, {});
+    ended_script.wait_for_startup_requests();
     return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
   }
   void send_result(const Outcome & outcome, bool abandoned) override
@@ -122,7 +124,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   DashboardCommand & command_;
   DashboardHost & host_;
   const typename A::Goal & message_;
-  std::shared_ptr<void> hold_;  ///< of the control program, until the program of the robot has been stopped
+  EndedScript ended_script_;  ///< until the program of the robot has been stopped
   std::optional<Run> run_;
 };
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ur_ros_rtde/detail/goals.hpp"
+#include "ur_ros_rtde/detail/startup_requests.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
@@ -52,6 +53,14 @@ class PluginHost {
   Goals goals_;
 };
 
+/// A script that CommandHost::end_script() has ended.
+struct EndedScript {
+  /// The control program is not started in its place while this object exists.
+  std::shared_ptr<void> hold;
+  /// See CommandHost::wait_for_startup_requests().
+  std::function<void()> wait_for_startup_requests = [] {};
+};
+
 class CommandHost : public PluginHost {
  public:
   struct Options {
@@ -72,11 +81,16 @@ class CommandHost : public PluginHost {
   /// Robot::begin_stop(), after which no goal moves the arm that was received before.
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
   /// For a command that stops the program through the dashboard server: ends the script that runs or is about
-  /// to run, and no goal moves the arm that was received before. The control program is not started in its
-  /// place while the returned object exists.
-  std::shared_ptr<void> end_script(const Error & why);
+  /// to run, and no goal moves the arm that was received before.
+  EndedScript end_script(const Error & why);
   /// Number of calls of begin_stop() and end_script().
   std::uint32_t stops() const { return stops_; }
+  /// For a request that brings the arm into operation, which is under way while the returned object exists.
+  /// Null, and it must not be sent, if `stops` are not all stops.
+  std::shared_ptr<void> begin_startup_request(std::uint32_t stops);
+  /// For a command that powers the arm off, after a stop has begun: waits until no request is under way that
+  /// would power it on again.
+  void wait_for_startup_requests();
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
   void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
@@ -94,6 +108,7 @@ class CommandHost : public PluginHost {
   Robot & robot_;
   Options options_;
   std::atomic<std::uint32_t> stops_ = 0;
+  StartupRequests startup_requests_;
   std::mutex mode_owner_mutex_;
   std::shared_ptr<rcl_cxx::ServerGoalHandle> mode_owner_;
   mutable std::mutex commands_mutex_;
@@ -103,7 +118,7 @@ class CommandHost : public PluginHost {
 class DashboardHost : public PluginHost {
  public:
   /// CommandHost::end_script() of the command server in this process.
-  using EndScript = std::function<std::shared_ptr<void>(const Error & why)>;
+  using EndScript = std::function<EndedScript(const Error & why)>;
 
   DashboardHost(rcl_cxx::Node & node, bool servers_on_demand, DashboardConnection & connection,
                 EndScript end_script)
@@ -111,7 +126,7 @@ class DashboardHost : public PluginHost {
   {
   }
   DashboardConnection & connection() { return connection_; }
-  std::shared_ptr<void> end_script(const Error & why) const { return end_script_(why); }
+  EndedScript end_script(const Error & why) const { return end_script_(why); }
 
  private:
   DashboardConnection & connection_;

@@ -124,6 +124,11 @@ class Run {
   Registers registers() const { return Registers(context_.robot); }
   [[nodiscard]] Outcome trigger(double timeout);
 
+  /// For a command without a lease that brings the arm into operation: calls `request`, which sends one
+  /// request and waits for the answer, unless the goal has to end or there was a stop; then throws RobotError
+  /// with the reason. A command that powers the arm off waits for the call: its request is the last one.
+  void unless_stopped(const std::function<void()> & request) const;
+
   /// Logs a warning for this goal and appends it to the message of the result.
   void warn(const std::string & text);
   /// `outcome` with the warnings in its message.

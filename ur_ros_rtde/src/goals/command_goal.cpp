@@ -246,6 +246,7 @@ RunContext CommandGoal::make_context()
   context.command = command_.get();
   context.stopping = stopping_;
   context.preempted_goal = preempted_goal_;
+  context.stops_before = stops_before_;
   context.log_warning = [this](const std::string & text) { warn(text); };
   context.publish_feedback = [this](const void * feedback) { handle().publish_feedback(feedback); };
   return context;
@@ -271,6 +272,9 @@ Outcome CommandGoal::execute()
     }
     if (auto why = stop_request().reason()) {
       return *std::move(why);
+    }
+    if (command_->traits.preempts_all) {
+      command_->host.wait_for_startup_requests();
     }
     return run_command(make_context());
   });

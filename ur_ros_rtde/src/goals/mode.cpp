@@ -34,7 +34,7 @@ std::vector<int> to_int_flags(const std::array<bool, 6> & flags)
 Mode::~Mode()
 {
   try {
-    if (on_ && (run_.control()->getStartedMotions() & ~all_modes) == 0) {
+    if (on_ && (run_.control()->getStartedMotions() & ~(all_modes | Control::MOTION_CONTACT)) == 0) {
       end();
     }
   } catch (const std::exception & error) {

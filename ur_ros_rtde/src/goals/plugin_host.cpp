@@ -1,8 +1,16 @@
 #include "ur_ros_rtde/plugin_host.hpp"
 
+#include <tuple>
+
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+
+/// Longer than the commands wait for an answer of the dashboard server.
+constexpr std::chrono::milliseconds startup_request_timeout{2500};
+
+}  // namespace
 
 PluginHost::PluginHost(rcl_cxx::Node & node, bool servers_on_demand)
     : node_(node),
@@ -42,7 +50,7 @@ std::shared_future<Expected<StopReport>> CommandHost::begin_stop(const StopOptio
   return robot_.begin_stop(options, why);
 }
 
-std::shared_ptr<void> CommandHost::end_script(const Error & why)
+EndedScript CommandHost::end_script(const Error & why)
 {
   ++stops_;
   auto hold = robot_.hold_program();
@@ -50,7 +58,17 @@ std::shared_ptr<void> CommandHost::end_script(const Error & why)
   if (holder && holder->resource == Resource::script) {
     robot_.begin_stop({}, why);
   }
-  return hold;
+  return {std::move(hold), [this] { wait_for_startup_requests(); }};
+}
+
+std::shared_ptr<void> CommandHost::begin_startup_request(std::uint32_t stops)
+{
+  return startup_requests_.begin([&] { return stops_ == stops; });
+}
+
+void CommandHost::wait_for_startup_requests()
+{
+  std::ignore = startup_requests_.wait_until_none(startup_request_timeout);
 }
 
 void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)

@@ -105,6 +105,11 @@ Status Run::stop_except_kept(const StopOptions & options)
   if (robot().is_at_rest_except(options.keep)) {
     return {};
   }
+  // It stays armed until the arm has to be stopped, or until the end of the goal.
+  const Activities left = robot().activities().without(options.keep);
+  if (left == Activities(Activity::contact_detection) && !robot().is_moving()) {
+    return {};
+  }
   const auto stopped = context_.robot.pause_motion(*context_.lease, options);
   return stopped ? Status() : tl::unexpected(stopped.error());
 }

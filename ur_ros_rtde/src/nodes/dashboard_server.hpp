@@ -16,7 +16,7 @@ class DashboardServer : public Server {
   /// `end_script`: of the command server in the same process.
   explicit DashboardServer(
       const rcl_cxx::Context::SharedPtr & context,
-      DashboardHost::EndScript end_script = [](const Error &) { return std::shared_ptr<void>(); });
+      DashboardHost::EndScript end_script = [](const Error &) { return EndedScript{}; });
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }

@@ -82,21 +82,17 @@ void TeleopTopic::close()
 void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info)
 {
   const auto sample = host_.robot().latest();
-  bool is_interrupted = false;
-  bool was_there = false;
+  Hindrance hindrance{};
   {
     const std::lock_guard lock(mutex_);
     Message next = following(std::move(target), info, sample);
-    was_there = next.session == 1;
-    // With the second message of a publisher that counts them, it is known whether the first was its first.
-    const bool is_known = was_there && info.number ? next.number == 2 : next.session != newest_.session;
-    is_interrupted = is_known && !next.may_start;
+    const bool was_logged =
+        next.session == newest_.session && next.hindrance == newest_.hindrance && is_known(newest_);
+    hindrance = is_known(next) && !was_logged ? next.hindrance : Hindrance::none;
     newest_ = std::move(next);
   }
   changed_.notify_all();
-  if (is_interrupted) {
-    log_interruption(was_there);
-  }
+  log_hindrance(hindrance);
 }
 
 TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info,
@@ -116,17 +112,44 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
   next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
-  const bool was_interrupted =
-      newest_.number == 0 ? info.number != 1u && next.arrived - created_ < discovery_time
-                          : (newest_.moves || was_stopped) && info.publisher == newest_.info.publisher;
-  const auto age = age_of_publisher(newest_.info, info);
-  const bool is_new = newest_.number == 1 && !was_stopped && age && *age < seconds(next.arrived - created_);
-  next.may_start = first ? !(target && next.moves && was_interrupted)
-                         : newest_.may_start || is_new || !(next.moves || was_stopped);
-  const bool begins = first || next.may_start != newest_.may_start;
-  next.stops = begins ? host_.stops() : newest_.stops;
   next.target = std::move(target);
+  next.first = first ? info : newest_.first;
+  next.silent_since = !first ? newest_.silent_since : newest_.number == 0 ? created_ : newest_.arrived;
+  next.hindrance = first ? hindrance_of_first(next, was_stopped) : hindrance_of_following(next, was_stopped);
+  next.stops = first || next.may_start() != newest_.may_start() ? host_.stops() : newest_.stops;
   return next;
+}
+
+TeleopTopic::Hindrance TeleopTopic::hindrance_of_first(const Message & next, bool was_stopped) const
+{
+  if (!next.target || !next.moves) {
+    return Hindrance::none;
+  }
+  if (newest_.number > 0 && next.info.publisher == newest_.info.publisher) {
+    return newest_.moves || was_stopped ? Hindrance::gap : Hindrance::none;
+  }
+  const bool may_be_old = next.info.number != 1u && next.arrived - next.silent_since < discovery_time;
+  return may_be_old && (newest_.number == 0 || was_stopped) ? Hindrance::publisher : Hindrance::none;
+}
+
+TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next, bool was_stopped) const
+{
+  if (newest_.may_start()) {
+    return Hindrance::none;
+  }
+  if (was_stopped) {
+    return Hindrance::stop;
+  }
+  const auto age = age_of_publisher(next.first, next.info, options_.timeout);
+  const bool is_new =
+      newest_.hindrance == Hindrance::publisher && age && *age < seconds(next.arrived - next.silent_since);
+  return is_new || !next.moves ? Hindrance::none : newest_.hindrance;
+}
+
+bool TeleopTopic::is_known(const Message & message) const
+{
+  return message.hindrance != Hindrance::publisher || !message.info.number ||
+         age_of_publisher(message.first, message.info, options_.timeout);
 }
 
 TeleopTopic::Message TeleopTopic::newest() const
@@ -142,7 +165,7 @@ void TeleopTopic::serve(const std::stop_token & stop)
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      const auto starts = [&] { return newest_.session != served && newest_.may_start; };
+      const auto starts = [&] { return newest_.session != served && newest_.may_start(); };
       if (!changed_.wait(lock, stop, starts) || closed_) {
         return;
       }
@@ -251,18 +274,29 @@ void TeleopTopic::log_end(const Outcome & outcome, const Latency & latency) cons
          fmt::format("{}: teleoperation ended: {}; {}", topic_, outcome.message(), latency.text()));
     return;
   }
+  log_ignored({outcome.code(), outcome.message()});
+}
+
+void TeleopTopic::log_ignored(const Error & why) const
+{
   log_(LogLevel::warn,
        fmt::format("{}: messages are ignored: {} ({} {}); teleoperation can start after {:.3g} s without "
                    "messages",
-                   topic_, outcome.message(), to_string(outcome.code()), static_cast<int>(outcome.code()),
-                   options_.timeout));
+                   topic_, why.message, to_string(why.code), static_cast<int>(why.code), options_.timeout));
 }
 
-void TeleopTopic::log_interruption(bool was_there) const
+void TeleopTopic::log_hindrance(Hindrance hindrance) const
 {
+  if (hindrance == Hindrance::none) {
+    return;
+  }
+  if (hindrance == Hindrance::stop) {
+    log_ignored(stopped_by_the_driver());
+    return;
+  }
   const std::string why =
-      was_there
-          ? "there were some when the driver started"
+      hindrance == Hindrance::publisher
+          ? "their publisher may have been there before a stop or the start of the driver"
           : fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout);
   log_(LogLevel::warn,
        fmt::format("{}: messages are ignored: {}; teleoperation starts with a message that commands no "

@@ -23,10 +23,10 @@ namespace ur_ros_rtde {
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
 /// of `timeout`; after a stop the publisher itself has to pause (has_paused), a delay on the way or of this
 /// host is not enough. A publisher whose last message before the pause commanded a motion, or that was
-/// stopped since, was interrupted, and one that was there before this object has begun without it: neither a
-/// hung program that goes on nor a restarted driver may move the arm. Their next session starts with a
-/// message that commands no motion (TargetFollower::moves). The start and the end of each session are logged
-/// once.
+/// stopped since, was interrupted, and one that was there before this object, or beside the one that was
+/// stopped, has begun without it: neither a hung program that goes on nor a restarted driver may move the
+/// arm. Their next session starts with a message that commands no motion (TargetFollower::moves). The start
+/// and the end of each session are logged once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
@@ -47,6 +47,14 @@ class TeleopTopic {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// Why a session waits for a message that commands no motion.
+  enum class Hindrance {
+    none,
+    gap,        ///< in the messages, after one that commanded a motion or was stopped
+    publisher,  ///< may be an old one, whose messages did not arrive
+    stop,       ///< while the session waited: the publisher has to pause
+  };
+
   struct Message {
     Expected<StreamTarget> target = StreamTarget{};
     Clock::time_point arrived{};
@@ -55,8 +63,11 @@ class TeleopTopic {
     std::uint32_t stops = 0;    ///< CommandHost::stops() when that session could begin
     TargetPeriod period{};      ///< between messages
     rcl_cxx::MessageInfo info;
-    bool moves = false;      ///< commands a motion
-    bool may_start = false;  ///< its session, if it has not been started yet
+    rcl_cxx::MessageInfo first;        ///< of its session
+    Clock::time_point silent_since{};  ///< before that session
+    bool moves = false;                ///< commands a motion
+    Hindrance hindrance{};             ///< of its session, if that has not been started yet
+    bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
   };
 
   /// Time from a message to its first command.
@@ -70,6 +81,10 @@ class TeleopTopic {
   /// The message that follows the newest one.
   Message following(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info,
                     const std::optional<Sample> & sample) const;
+  Hindrance hindrance_of_first(const Message & next, bool was_stopped) const;
+  Hindrance hindrance_of_following(const Message & next, bool was_stopped) const;
+  /// Messages may still show that the publisher is a new one, whose first messages were lost.
+  bool is_known(const Message & message) const;
   void serve(const std::stop_token & stop);
   Outcome run_session(std::uint64_t session, Latency & latency);
   /// Tells the session of `lease` to end; the arm stops without waiting for its thread.
@@ -81,8 +96,8 @@ class TeleopTopic {
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
   Outcome settle(const Error & why) const;
   Message newest() const;
-  /// Logs why messages are ignored. `was_there`: the publisher, before this object.
-  void log_interruption(bool was_there) const;
+  void log_hindrance(Hindrance hindrance) const;
+  void log_ignored(const Error & why) const;
   void log_end(const Outcome & outcome, const Latency & latency) const;
 
   const std::string topic_;

@@ -14,7 +14,7 @@ class MakeReady : public Command<ur_ros_rtde_msgs::action::MakeReady> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    StartupSequence startup(run.robot(), goal);
+    StartupSequence startup(run, goal);
     return run_steps(run, goal.timeout, [&] { return startup.step(); });
   }
 };

@@ -28,8 +28,10 @@ void StartupSequence::command(const std::string & line, const std::string & repl
   }
   last_command_ = line;
   last_command_time_ = now;
-  const Status status = command_dashboard(dashboard_, line, reply);
-  last_rejection_ = status ? "" : "; " + status.error().message;
+  run_.unless_stopped([&] {
+    const Status status = command_dashboard(dashboard_, line, reply);
+    last_rejection_ = status ? "" : "; " + status.error().message;
+  });
 }
 
 /// The dashboard server does not report open popups, so they are closed once and again after each safety

@@ -5,6 +5,7 @@
 #include <string>
 #include <ur_ros_rtde_msgs/action/make_ready.hpp>
 
+#include "ur_ros_rtde/run.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
@@ -17,13 +18,13 @@ class StartupSequence {
  public:
   using Goal = ur_ros_rtde_msgs::action::MakeReady::Goal;
 
-  StartupSequence(const Robot & robot, const Goal & goal)
-      : robot_(robot), goal_(goal), dashboard_(robot.address())
+  StartupSequence(const Run & run, const Goal & goal)
+      : run_(run), robot_(run.robot()), goal_(goal), dashboard_(robot_.address())
   {
   }
 
   /// Executes the next step and describes it. Returns an empty string when the robot is ready. Throws
-  /// RobotError with the reason and the remedy if an operator has to act, or link_lost.
+  /// RobotError with the reason and the remedy if an operator has to act, link_lost, or the reason of a stop.
   std::string step();
 
  private:
@@ -35,11 +36,12 @@ class StartupSequence {
   std::string start_arm(const std::string & mode);
   std::string start_program();
   void close_popups();
-  /// Sends a command. The same command is repeated no earlier than after `repeat_interval`, or after 1 s if
-  /// it was rejected.
+  /// Sends a command, unless there was a stop. The same command is repeated no earlier than after
+  /// `repeat_interval`, or after 1 s if it was rejected.
   void command(const std::string & line, const std::string & reply,
                std::chrono::milliseconds repeat_interval);
 
+  const Run & run_;
   const Robot & robot_;
   const Goal & goal_;
   DashboardSession dashboard_;  ///< of the current step

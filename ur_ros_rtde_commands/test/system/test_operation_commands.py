@@ -146,18 +146,56 @@ DASHBOARD_PORT = 29999
 PORT_BEHIND = 29998  # of the simulator's dashboard server
 
 
-class RejectsStop(socketserver.StreamRequestHandler):
-    """Passes everything on to the dashboard server of the simulator, but `stop`."""
+class PassesOn(socketserver.StreamRequestHandler):
+    """Passes everything on to the dashboard server of the simulator."""
 
     def handle(self):
-        with socket.create_connection((self.server.server_address[0], PORT_BEHIND)) as behind, behind.makefile("rb") as answers:
-            self.wfile.write(answers.readline())
+        with socket.create_connection((self.server.server_address[0], PORT_BEHIND)) as self.behind, \
+                self.behind.makefile("rb") as self.answers:
+            self.wfile.write(self.answers.readline())
             for line in self.rfile:
-                if line.strip() == b"stop":
-                    self.wfile.write(b"Failed to execute: stop\n")
-                else:
-                    behind.sendall(line)
-                    self.wfile.write(answers.readline())
+                self.wfile.write(self.answer(line))
+
+    def answer(self, line):
+        self.behind.sendall(line)
+        return self.answers.readline()
+
+
+class RejectsStop(PassesOn):
+    def answer(self, line):
+        return b"Failed to execute: stop\n" if line.strip() == b"stop" else super().answer(line)
+
+
+class HoldsMakeReady(PassesOn):
+    """Holds one line of make_ready until the arm is powered off: the answer to `robotmode`, or `power on`."""
+
+    held = ""
+    holding = threading.Event()
+    powered_off = threading.Event()
+    passed_on = []
+    is_make_ready = False  # the client of this connection: no other one asks for the safety mode
+
+    @classmethod
+    def arm(cls, held):
+        cls.held, cls.holding, cls.powered_off, cls.passed_on = held, threading.Event(), threading.Event(), []
+
+    def answer(self, line):
+        text = line.strip().decode()
+        self.is_make_ready = self.is_make_ready or text == "safetymode"
+        holds = self.is_make_ready and text == self.held and not self.holding.is_set()
+        if holds and text == "power on":
+            self.hold(1.0)  # not for ever: a power off may wait for the answer
+        self.passed_on.append(text)
+        answer = super().answer(line)
+        if holds and text == "robotmode":
+            self.hold(1.5)  # make_ready waits for 2 s
+        if text == "power off":
+            self.powered_off.set()
+        return answer
+
+    def hold(self, timeout):
+        self.holding.set()
+        self.powered_off.wait(timeout)
 
 
 class DashboardProxy(socketserver.ThreadingTCPServer):
@@ -184,6 +222,45 @@ def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes
             client.close()
             driver.stop()
             proxy.shutdown()
+
+
+@pytest.fixture
+def make_ready_held(addresses, processes):
+    """A client and the simulator behind a proxy, with the arm powered off."""
+    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), HoldsMakeReady) as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e",
+                                      "plugins:=[move_j,make_ready,stand_down,dashboard/power_off]", namespace="held"))
+        client = Client("held")
+        try:
+            HoldsMakeReady.arm("")
+            robot_fixtures.make_ready(client)
+            power_off(client, simulator)
+            yield client, simulator
+        finally:
+            client.close()
+            driver.stop()
+            proxy.shutdown()
+
+
+@pytest.mark.parametrize("command, held", [
+    ("dashboard/power_off", "robotmode"),  # the next line would be `power on`
+    ("dashboard/power_off", "power on"),
+    ("stand_down", "power on"),
+])
+def test_make_ready_sends_nothing_after_a_power_off(make_ready_held, command, held):
+    client, simulator = make_ready_held
+    HoldsMakeReady.arm(held)
+    goal = client.send(MakeReady, "make_ready")
+    assert HoldsMakeReady.holding.wait(15.0), HoldsMakeReady.passed_on
+    client.send(DashboardCommand, command).succeeded()
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+    begin = simulator.state()["timestamp"]
+    wait_for(lambda: simulator.state()["timestamp"] > begin + 3.0, 10.0, "the time in which make_ready would send the next command")
+    requests = [line for line in HoldsMakeReady.passed_on if line.startswith(("power", "brake"))]
+    assert requests == (["power on"] if held == "power on" else []) + ["power off"]
+    assert simulator.state()["robot_mode"] == "POWER_OFF"
 
 
 def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simulator):

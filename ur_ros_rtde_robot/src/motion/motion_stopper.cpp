@@ -169,9 +169,14 @@ void MotionStopper::request(const std::shared_ptr<Permit> & holder, const StopOp
     return;
   }
   const Beginning beginning(*this);
-  // The holder of a mode does not own what moves the arm; its goal decides what to do.
-  if (holder->revoke(why) && holder->claim().resource != Resource::mode) {
+  const bool revoked_now = holder->revoke(why);
+  if (holder->claim().resource == Resource::mode) {
+    return;  // its holder does not own what moves the arm; its goal decides what to do
+  }
+  if (revoked_now) {
     begin_operation(options);
+  } else {
+    strengthen(options);
   }
 }
 
@@ -201,6 +206,14 @@ void MotionStopper::require(const StopOptions & options)
   const StopOptions joined = stronger(operation_->options, options);
   options_changed_ = options_changed_ || !(joined == operation_->options);
   operation_->options = joined;
+}
+
+void MotionStopper::strengthen(const StopOptions & options)
+{
+  const std::lock_guard lock(mutex_);
+  if (operation_ && !(stronger(operation_->options, options) == operation_->options)) {
+    require(options);
+  }
 }
 
 void MotionStopper::serve(const std::stop_token & stop)

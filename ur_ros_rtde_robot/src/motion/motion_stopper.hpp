@@ -105,6 +105,8 @@ class MotionStopper {
   Stopping current();
   /// An operation with at least these decelerations. The mutex must be held.
   void require(const StopOptions & options);
+  /// The stop under way, if there is one, has to fulfil these options too.
+  void strengthen(const StopOptions & options);
   void serve(const std::stop_token & stop);
   void execute_operation(std::unique_lock<std::mutex> & lock);
   void supervise();
@@ -120,6 +122,8 @@ class MotionStopper {
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
   bool foreign_program_plays() const;
+  /// It need not have a watchdog.
+  Expected<StopMeans> end_foreign_program(const StopOptions & options);
   /// The arm is at rest by `means` once the program has ended.
   Expected<StopMeans> end_program_that_may_go_on(StopMeans means, const StopOptions & options);
   Status end_program(const StopOptions & options);

@@ -11,7 +11,7 @@ namespace {
 
 using Control = ur_rtde::RTDEControlInterface;
 
-constexpr std::array<std::pair<std::uint32_t, Activity>, 10> motions_of_ur_rtde{
+constexpr std::array<std::pair<std::uint32_t, Activity>, 11> motions_of_ur_rtde{
     {{Control::MOTION_MOVE_JOINT, Activity::joint_move},
      {Control::MOTION_MOVE_LINEAR, Activity::linear_move},
      {Control::MOTION_SPEED_JOINT, Activity::joint_speed},
@@ -21,7 +21,8 @@ constexpr std::array<std::pair<std::uint32_t, Activity>, 10> motions_of_ur_rtde{
      {Control::MOTION_TORQUE, Activity::torque},
      {Control::MOTION_FORCE, Activity::force_mode},
      {Control::MOTION_FREEDRIVE, Activity::freedrive},
-     {Control::MOTION_TEACH, Activity::teach_mode}}};
+     {Control::MOTION_TEACH, Activity::teach_mode},
+     {Control::MOTION_CONTACT, Activity::contact_detection}}};
 
 constexpr Activities moves = Activity::joint_move | Activity::linear_move;
 

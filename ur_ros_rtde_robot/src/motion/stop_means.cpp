@@ -34,7 +34,8 @@ constexpr std::uint64_t sample_delay = 5;
 constexpr Activities joint_motions = Activity::joint_move | Activity::joint_speed;
 constexpr Activities linear_motions =
     Activity::linear_move | Activity::linear_speed | Activity::servo | Activity::jog;
-constexpr Activities motions = joint_motions | linear_motions;
+/// stopJ and stopL end the contact detection too, with a contact that it has detected and not executed.
+constexpr Activities motions = joint_motions | linear_motions | Activity::contact_detection;
 
 /// The functions of ur_rtde that end what stopJ and stopL do not end, in the order in which they are called:
 /// the arm is at rest by then, so that ending a mode does not disturb a motion.
@@ -169,7 +170,7 @@ Status MotionStopper::send_stop(Activities started, const StopOptions & options)
   return with_control(stop_cycles * cycle_time(), [&](Control & control) {
     constexpr std::uint32_t stopped = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR |
                                       Control::MOTION_SPEED_JOINT | Control::MOTION_SPEED_LINEAR |
-                                      Control::MOTION_SERVO | Control::MOTION_JOG;
+                                      Control::MOTION_SERVO | Control::MOTION_JOG | Control::MOTION_CONTACT;
     if (stops_in_joint_space_) {
       control.stopJ(options.joint_deceleration, true);
     } else {

@@ -35,7 +35,7 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     return settled || state_.link().connected ? report(settled) : stop_without_rtde();
   };
   if (options.ends_foreign_program && foreign_program_plays()) {
-    return report(end_program_that_may_go_on(StopMeans::program_stopped, options));
+    return report(end_foreign_program(options));
   }
   if (is_done(options)) {
     return at_rest(StopMeans::nothing_moved);
@@ -105,6 +105,17 @@ Expected<StopMeans> MotionStopper::end_program_that_may_go_on(StopMeans means, c
                     ended.error().message));
   }
   return means;
+}
+
+Expected<StopMeans> MotionStopper::end_foreign_program(const StopOptions & options)
+{
+  if (const Status ended = stop_by_dashboard(options); !ended) {
+    return failure(ended.error().code,
+                   fmt::format("a program that is not of this driver runs on the robot and may move the arm: "
+                               "stop it on the pendant ({})",
+                               ended.error().message));
+  }
+  return StopMeans::program_stopped;
 }
 
 bool MotionStopper::foreign_program_plays() const

@@ -118,7 +118,8 @@ bool ControlProgramManager::has_left_program() const
 bool ControlProgramManager::has_foreign_program() const
 {
   const ProgramState state = state_;
-  return state == ProgramState::foreign || state == ProgramState::idle || state == ProgramState::unclaimed;
+  return state == ProgramState::foreign || state == ProgramState::idle || state == ProgramState::unclaimed ||
+         state == ProgramState::in_use || state == ProgramState::in_use_after_end;
 }
 
 std::pair<ProgramState, ProgramObservation> ControlProgramManager::snapshot() const

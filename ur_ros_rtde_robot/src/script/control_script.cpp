@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "script/registers.hpp"
@@ -19,24 +20,20 @@ constexpr std::string_view before_loop = "            cmd = rtde_cmd()\n";
 /// is minus the number while the extension runs, the number when it has finished, and 0 when the script is
 /// ready for the next one. If the number is cleared before the extension has finished, 0 also means that the
 /// arm has stopped. A number that is in the register when the script begins is ignored until it is cleared.
-/// The modes that an extension switches on end with it. After one that has finished, there is no stopj: a
-/// command may move the arm, and two threads that do end the program.
+/// After an extension that has finished, there is no stopj: a command may move the arm, and two threads that
+/// do end the program.
 constexpr std::string_view dispatcher = R"(
     global extension_id = 0
     global extension_state = 5 # 0 none, 1 under way, 2 done, 3 being stopped, 4 stopped, 5 before the first
     global extension_thrd = 0
 
-    def end_modes_of_extension():
-        if is_in_forcemode == 0: # otherwise, a command has started it
-            end_force_mode()
-        end
-$5.10   end_freedrive_mode()
-        end_teach_mode()
+    thread extension_thread():
+{choice}{mode_ends}        extension_state = 2
     end
 
+    # the modes first: freedrive ignores stopj
     thread extension_stop_thread():
-        end_modes_of_extension() # freedrive first: it ignores stopj
-        stopj(4)
+{mode_ends}        stopj(4)
         extension_state = 4
     end
 
@@ -66,6 +63,18 @@ $5.10   end_freedrive_mode()
 
 )";
 
+/// A mode of the arm that snippets can switch on.
+struct SnippetMode {
+  std::array<std::string_view, 2> starts;
+  std::string_view condition;  ///< a command has not started it
+  std::string_view end;
+};
+// Each controller that has a start has its end, so that these lines need no version marker.
+constexpr std::array<SnippetMode, 3> snippet_modes{
+    {{{"force_mode"}, "is_in_forcemode == 0 and ", "end_force_mode()"},
+     {{"freedrive_mode", "freedrive_mode_no_incorrect_payload_check"}, "", "end_freedrive_mode()"},
+     {{"teach_mode"}, "", "end_teach_mode()"}}};
+
 Fault extension_fault(const ScriptExtension & extension, const Fault & fault, const char * part = "")
 {
   const std::string where = fault.line > 0 ? fmt::format(", {}line {}", part, fault.line) : "";
@@ -90,6 +99,16 @@ std::string without_markers(std::string text)
     }
   }
   return text;
+}
+
+bool starts(const SnippetMode & mode, const std::string & code)
+{
+  const std::string plain = without_markers(code);
+  const auto scanned = scan(plain);
+  const auto is_start = [&](const Token & token) {
+    return token.kind == Token::Kind::word && std::ranges::find(mode.starts, token.text) != mode.starts.end();
+  };
+  return scanned && std::ranges::any_of(scanned->tokens, is_start);
 }
 
 /// Expands the short forms of registers and checks for code that the controller would reject.
@@ -136,7 +155,7 @@ class Composer {
       return ok;
     }
     add_preamble(extension, *preamble);
-    parts_.push_back({extension, id, *snippet});
+    parts_.push_back({extension, id, *snippet, *preamble});
     return {};
   }
 
@@ -167,6 +186,7 @@ class Composer {
     ScriptExtension extension;
     int id;
     std::string snippet;
+    std::string preamble;
   };
 
   Result<void> check_against_others(const ScriptExtension & extension) const
@@ -246,10 +266,29 @@ class Composer {
       choice += fmt::format("        {} extension_id == {}:\n            extension_{}()\n",
                             choice.empty() ? "if" : "elif", part.id, part.id);
     }
-    result_.text.insert(dispatcher);
-    result_.text.insert(
-        "    thread extension_thread():\n" + choice +
-        "        end\n        end_modes_of_extension()\n        extension_state = 2\n    end\n");
+    choice += "        end\n";
+    result_.text.insert(fmt::format(fmt::runtime(dispatcher), fmt::arg("choice", choice),
+                                    fmt::arg("mode_ends", mode_ends())));
+  }
+
+  /// The modes that an extension switches on end with it. It leaves a mode alone that its code does not
+  /// start: a command has started it.
+  std::string mode_ends() const
+  {
+    std::string result;
+    for (const SnippetMode & mode : snippet_modes) {
+      std::string ids;
+      for (const Part & part : parts_) {
+        if (starts(mode, part.snippet) || starts(mode, part.preamble)) {
+          ids += fmt::format("{}extension_id == {}", ids.empty() ? "" : " or ", part.id);
+        }
+      }
+      if (!ids.empty()) {
+        result +=
+            fmt::format("        if {}({}):\n            {}\n        end\n", mode.condition, ids, mode.end);
+      }
+    }
+    return result;
   }
 
   std::vector<Part> parts_;

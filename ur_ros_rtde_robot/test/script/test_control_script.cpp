@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "script/control_script.hpp"
 #include "script/registers.hpp"
@@ -89,6 +92,47 @@ TEST(ControlScriptTest, SupportsEachVersionAndRegisterRange)
     EXPECT_EQ(text.find("get_inverse_kin_has_solution(x)") != std::string::npos, minor >= 10);
     EXPECT_EQ(place(*script, line_of(text, "z = read_input_integer_reg(20)")), "extension `a`, line 3");
     EXPECT_EQ(place(*script, line_of(text, "def process_cmd")), "");
+  }
+}
+
+/// How often the extensions end a mode: once after they have finished, once when they are stopped.
+std::ptrdiff_t count_ends(const std::vector<ScriptExtension> & extensions, const std::string & end,
+                          unsigned major = 5, unsigned minor = 25)
+{
+  const auto lines = [&](const std::vector<ScriptExtension> & added) {
+    const auto composed = compose(base(), added);
+    const std::string text = for_controller(*composed, major, minor, false)->text.text();
+    std::ptrdiff_t count = 0;
+    for (auto at = text.find(" " + end); at != std::string::npos; at = text.find(" " + end, at + 1)) {
+      ++count;
+    }
+    return count;
+  };
+  return lines(extensions) - lines({});
+}
+
+TEST(ControlScriptTest, EndsOnlyTheModesThatTheCodeOfAnExtensionStarts)
+{
+  const auto none = extension("a", "end_freedrive_mode()\n# freedrive_mode()\ntextmsg(\"force_mode(\")\n");
+  for (const char * end : {"end_force_mode()", "end_freedrive_mode()", "end_teach_mode()"}) {
+    EXPECT_EQ(count_ends({none}, end), 0) << end;
+  }
+  const auto guide = extension("guide", "freedrive_mode()\n");
+  EXPECT_EQ(count_ends({none, guide}, "end_freedrive_mode()"), 2);
+  EXPECT_EQ(count_ends({none, guide}, "end_teach_mode()"), 0);
+  EXPECT_EQ(count_ends({none, guide}, "if (extension_id == 257):"), 2) << "not after the other one";
+  auto press = extension("press", "press()\n");
+  press.preamble = "def press():\n  force_mode(get_target_tcp_pose(), axes, wrench, 2, limits)\nend\n";
+  EXPECT_EQ(count_ends({press}, "if is_in_forcemode == 0 and (extension_id == 256):"), 2);
+  EXPECT_EQ(count_ends({press}, "end_force_mode()"), 2);
+}
+
+TEST(ControlScriptTest, EndsFreedriveOnEachController)
+{
+  const auto guide = extension("guide", "freedrive_mode()\n");
+  const std::vector<std::pair<unsigned, unsigned>> versions{{3, 5}, {3, 15}, {5, 0}, {5, 9}, {5, 10}};
+  for (const auto & [major, minor] : versions) {
+    EXPECT_EQ(count_ends({guide}, "end_freedrive_mode()", major, minor), 2) << major << "." << minor;
   }
 }
 

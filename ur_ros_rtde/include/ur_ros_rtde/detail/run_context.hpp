@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <memory>
@@ -24,6 +25,7 @@ struct RunContext {
   std::optional<std::shared_future<Expected<StopReport>>> stopping{};
   /// Of a stop: the goal that was executed, "/move_j, goal 3f0c12ab". Empty: none.
   std::string preempted_goal{};
+  std::uint32_t stops_before = 0;  ///< CommandHost::stops() when the goal was received
   std::function<void(const std::string &)> log_warning = [](const std::string &) {};
   /// Publishes an A::Feedback of the action.
   std::function<void(const void *)> publish_feedback = [](const void *) {};

@@ -8,6 +8,7 @@ AT_REST = 1e-4  # rad/s and m/s, of targets
 REST_CYCLES = 10  # a shorter time without motion is a reversal
 DECREASE = 1e-6  # a smaller change of a speed is rounding
 MEASURED_CYCLES = 6  # a shorter deceleration is not measured
+CREEPING = 2e-3  # rad/s and m/s: a controller may approach the last position in several attempts
 
 
 class Trace:
@@ -86,10 +87,16 @@ def find_stopping(trace: Trace, event: int, may_begin_until: int, end: int, colu
     again = None if rest is None else next((index for index in range(rest, end) if trace.moves(index)), None)
     if rest is None or not any(trace.moves(index) for index in range(event, rest)):
         return Stopping(event, None, rest, again)
-    first = rest
+    first = _begin_of_creeping(trace, event, rest, column)
     while first > event + 1 and _slower(trace, first - 1, first, column):
         first -= 1
     return Stopping(event, first, rest, again)
+
+
+def _begin_of_creeping(trace: Trace, event: int, rest: int, column: int) -> int:
+    """Returns the cycle from which on the arm is slow; `rest` if it was not faster after the event."""
+    fast = [index for index in range(event + 1, rest) if trace.speeds[index][column] > CREEPING]
+    return fast[-1] + 1 if fast else rest
 
 
 def _slower(trace: Trace, before: int, after: int, column: int) -> bool:

@@ -19,9 +19,10 @@ enum class Activity : std::uint32_t {
   force_mode = 1U << 9U,
   freedrive = 1U << 10U,
   teach_mode = 1U << 11U,
+  contact_detection = 1U << 12U,  ///< startContactDetection: a contact moves the arm
   call =
       1U
-      << 12U,  ///< under way, of a holder whose permit was revoked after it began: it may start any of these
+      << 13U,  ///< under way, of a holder whose permit was revoked after it began: it may start any of these
 };
 
 /// A set of activities.

@@ -32,6 +32,12 @@ class InputRegisters {
   Status clear_trigger();
   /// An extension was started in the current control program, and the trigger has not been cleared.
   bool extension_started() const;
+  /// The connection over which the trigger is written.
+  struct Connection {
+    bool is_open = false;
+    std::uint32_t starts = 0;  ///< RtdeInterfaces::io_starts()
+  };
+  Connection connection() const { return {interfaces_.is_io_open(), interfaces_.io_starts()}; }
 
  private:
   struct Trigger {

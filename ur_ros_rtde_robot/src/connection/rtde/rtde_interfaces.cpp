@@ -75,13 +75,16 @@ Error RtdeInterfaces::connection_error(std::string_view what, const std::excepti
   return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
 }
 
+bool RtdeInterfaces::is_io_open() const
+{
+  const std::lock_guard lock(mutex_);
+  return io_ && io_->isConnected();
+}
+
 Status RtdeInterfaces::ensure_io()
 {
-  {
-    const std::lock_guard lock(mutex_);
-    if (io_ && io_->isConnected()) {
-      return {};
-    }
+  if (is_io_open()) {
+    return {};
   }
   if (const auto reachable = TcpSocket::connect(options_.address, rtde_port, options_.connect_timeout);
       !reachable) {
@@ -97,6 +100,7 @@ Status RtdeInterfaces::ensure_io()
     {
       const std::lock_guard lock(mutex_);
       io_.swap(io);
+      ++io_starts_;
     }
     return {};  // the previous interface is closed here
   } catch (const std::exception & error) {

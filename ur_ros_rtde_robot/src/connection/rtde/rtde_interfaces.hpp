@@ -47,6 +47,9 @@ class RtdeInterfaces {
 
   /// Opens the IO interface unless it is open. Takes up to the connect timeout.
   Status ensure_io();
+  bool is_io_open() const;
+  /// How often the IO interface was opened, which clears the trigger of the extensions.
+  std::uint32_t io_starts() const { return io_starts_; }
   /// Uploads and starts the control program, then its watchdog. Reuses the pending connection if it is
   /// usable. May take several seconds if the robot does not start the program. The previous program must have
   /// been stopped.
@@ -116,6 +119,7 @@ class RtdeInterfaces {
   std::atomic<std::uint32_t> starts_ = 0;
   std::atomic<double> watchdog_frequency_ = 0.0;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
+  std::atomic<std::uint32_t> io_starts_ = 0;
   std::shared_ptr<InterfaceLock> control_lock_ = std::make_shared<InterfaceLock>();
   std::shared_ptr<InterfaceLock> io_lock_ = std::make_shared<InterfaceLock>();
 };

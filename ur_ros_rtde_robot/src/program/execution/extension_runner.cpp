@@ -15,6 +15,9 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds acknowledgement_timeout(1000);
+/// For the IO connection to be opened again. That ends the extension more gently than the next means of a
+/// stop.
+constexpr milliseconds reconnection_timeout(1000);
 constexpr milliseconds message_timeout(300);  // from the end of the program to the error message
 constexpr int lines_before_extensions = 1;    // `def rtde_control():`
 
@@ -27,9 +30,12 @@ struct ExtensionRunner::Run {
   // Of MotionTracker::View at the begin.
   std::uint32_t program;
   std::uint32_t link;
+  std::uint32_t io_starts;  ///< InputRegisters::Connection::starts
   InputRegisters::Permission permission;
   bool begun = false;
   Clock::time_point begin = Clock::now();
+  std::optional<double> controller_begin = std::nullopt;  ///< s, of the first sample
+  std::optional<Clock::time_point> disconnected_since = std::nullopt;
 };
 
 bool ExtensionRunner::wait_for_acknowledgement(double value) const
@@ -72,6 +78,29 @@ Status ExtensionRunner::trigger_lost(const Run & run) const
       fmt::format("the IO connection was lost, which ended the extension {}: send the goal again", run.name));
 }
 
+bool ExtensionRunner::has_lost_connection(Run & run) const
+{
+  const auto connection = registers_.connection();
+  if (!run.begun && connection.starts != run.io_starts) {
+    return true;
+  }
+  if (connection.is_open) {
+    run.disconnected_since.reset();
+    return false;
+  }
+  run.disconnected_since = run.disconnected_since.value_or(Clock::now());
+  return Clock::now() - *run.disconnected_since > reconnection_timeout;
+}
+
+/// By both clocks: the controller may be slow, and the samples may be delayed.
+bool ExtensionRunner::is_ignored(Run & run, const Sample & sample)
+{
+  run.controller_begin = run.controller_begin.value_or(sample.controller_time);
+  const std::chrono::duration<double> timeout(acknowledgement_timeout);
+  return !run.begun && Clock::now() - run.begin > acknowledgement_timeout &&
+         sample.controller_time - *run.controller_begin > timeout.count();
+}
+
 std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions & options) const
 {
   const auto link = state_.link();
@@ -99,8 +128,15 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
       return Status(tl::unexpected(*reason));
     }
   }
-  if (run.begun && acknowledgement == 0.0) {
+  if ((run.begun && acknowledgement == 0.0) || has_lost_connection(run)) {
     return trigger_lost(run);
+  }
+  if (is_ignored(run, *sample)) {
+    return failure(
+        ErrorCode::timeout,
+        fmt::format("the control program has not begun the extension {} within {:.1f} s of its trigger: send "
+                    "the goal again",
+                    run.name, std::chrono::duration<double>(acknowledgement_timeout).count()));
   }
   if (Clock::now() - run.begin > options.timeout) {
     return failure(ErrorCode::timeout, fmt::format("the extension {} has not ended after {:.1f} s", run.name,
@@ -143,7 +179,8 @@ Status ExtensionRunner::run(const std::string & name, const ExtensionOptions & o
     return tl::unexpected(primary.error());
   }
   const auto view = tracker_.view();
-  Run run{name, *id, std::move(*primary), view.program, view.link, permission};
+  const auto connection = registers_.connection();
+  Run run{name, *id, std::move(*primary), view.program, view.link, connection.starts, permission};
   if (Status triggered = registers_.set_trigger(run.id, permission); !triggered) {
     return triggered;
   }

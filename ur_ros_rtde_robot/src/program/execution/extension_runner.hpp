@@ -38,6 +38,10 @@ class ExtensionRunner {
   std::optional<Status> result(Run & run, const ExtensionOptions & options) const;
   Status failure_of(Run & run) const;
   Status trigger_lost(const Run & run) const;
+  /// Whether the IO connection has not been opened again in time, or was before the extension began.
+  bool has_lost_connection(Run & run) const;
+  /// Whether the control program has ignored the trigger for too long.
+  static bool is_ignored(Run & run, const Sample & sample);
 
   const RobotOptions options_;
   const StateReceiver & state_;

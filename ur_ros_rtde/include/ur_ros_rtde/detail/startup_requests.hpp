@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+namespace ur_ros_rtde {
+
+/// The requests that are under way to bring the arm into operation, so that another request can be sent after
+/// them. Thread-safe.
+class StartupRequests {
+ public:
+  /// The request is under way while the returned object exists, which must end before this one. Null if
+  /// `may_begin` is false; a wait that begins after that has changed sees all requests.
+  std::shared_ptr<void> begin(const std::function<bool()> & may_begin);
+  /// False if a request is still under way after `timeout`.
+  bool wait_until_none(std::chrono::milliseconds timeout);
+
+ private:
+  void end();
+
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  unsigned under_way_ = 0;
+};
+
+}  // namespace ur_ros_rtde
