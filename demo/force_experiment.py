@@ -15,6 +15,7 @@ import rclpy
 from control_port import ControlPort
 from force_figure import VELOCITIES, draw, force_column
 from rclpy.action import ActionClient
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from recorder import Recorder, mark_events, write_csv
@@ -166,12 +167,8 @@ def main():
                  f"MoveDownUntilForce on a simulated {options.model}: only a force along the flange Z axis stops it")
             print(f"written:    {csv_path} ({len(experiment.recorder.rows)} samples), {png_path}")
             return 0 if result.success and len(events) == 3 else 1
-    except KeyboardInterrupt:
+    except ExternalShutdownException:
         return 128 + signal.SIGINT
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -87,6 +87,22 @@ def test_another_simulator_on_the_address_is_not_used(tmp_path):
         simulator.wait(20.0)
 
 
+def test_beside_another_driver_in_the_same_network_it_says_how_to_separate_them(tmp_path):
+    address = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
+    layout = Layout.of_environment()
+    driver = Process([program(layout, "ur_ros_rtde", "robot_state_receiver"), "--ros-args", "-p", f"robot_ip:={address}"],
+                     {**os.environ, **workspace_environment(layout)})
+    try:
+        driver.wait_for_output("robot_state_receiver", 20.0)
+        result = demo("--address", address, "--output", str(tmp_path))
+    finally:
+        driver.interrupt()
+        driver.wait(20.0)
+    assert result.returncode == 1
+    assert "/robot_state_receiver is already running" in result.stdout and "ROS_DOMAIN_ID" in result.stdout
+    assert "Traceback" not in result.stdout + result.stderr
+
+
 def test_the_packages_that_the_demo_imports_are_built():
     built = packages.with_dependencies(packages.discover(), packages_of_demo(parse([])))
     used = set()

@@ -94,7 +94,7 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
     console.step("move_down_until_force")
-    command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
+    command = [layout.python, ROOT / "demo", "--address", options.address, "--model",
                _name(options.model), "--threshold", options.threshold, "--speed", options.speed,
                "--drop", options.drop, "--output", options.output]
     return programs.run([str(part) for part in command], run_environment(layout), limit=300.0)
