@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
-from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, state_rows
+from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, signal_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
-from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState
+from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState, Signals
 
 
 def moving(stamp=0.0, position=0.0):
@@ -64,6 +64,15 @@ def test_the_arm_is_shown_in_numbers():
     assert rows["Roll, pitch, yaw"] == ["180.0", "0.0", "0.0", "°"]
     assert rows["Force, TCP frame"] == ["0.0", "1.0", "2.0", "N"] and rows["Torque, TCP frame"][-2:] == ["N", "m"]
     assert arm_rows(RobotState()) == []
+
+
+def test_inputs_and_outputs_are_shown_by_pin():
+    state = moving()
+    assert signal_rows(state) == []
+    state.signals = Signals(tuple(pin in (2, 9, 17) for pin in range(18)), (False,) * 18, (0.004, 5.0), (0.0, 0.012))
+    rows = {title: text.split() for title, text in signal_rows(state)}
+    assert rows["Digital inputs on"] == ["2,", "9,", "tool", "1"] and rows["Digital outputs on"] == ["all", "off"]
+    assert rows["Analog inputs, A or V"] == ["0.0040", "5.0000"] and rows["Analog outputs, A or V"] == ["0.0000", "0.0120"]
 
 
 @pytest.mark.parametrize("wxyz, degrees", [((0.5**0.5, 0, 0, 0.5**0.5), (0, 0, 90)), ((0.5**0.5, 0, 0.5**0.5, 0), (0, 90, 0)),

@@ -104,10 +104,12 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   next.info = info;
   const double interval = seconds(next.arrived - newest_.arrived);
   const bool was_stopped = host_.stops() != newest_.stops;
-  const bool first =
-      newest_.number == 0 ||
-      (interval > options_.timeout && (!was_stopped || has_paused(newest_.info, info, options_.timeout)));
+  const bool paused = newest_.number == 0 || has_paused(newest_.info, info, options_.timeout);
+  const bool first = newest_.number == 0 ||
+                     (interval > options_.timeout && (paused || (!was_stopped && !newest_.needs_pause)));
   next.session = newest_.session + (first ? 1 : 0);
+  next.follows_pause = first ? paused : newest_.follows_pause;
+  next.needs_pause = !first && newest_.needs_pause;
   next.period = newest_.period;
   next.period.next(interval, options_.timeout);
   const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
@@ -129,7 +131,8 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_first(const Message & next, boo
     return newest_.moves || was_stopped ? Hindrance::gap : Hindrance::none;
   }
   const bool may_be_old = next.info.number != 1u && next.arrived - next.silent_since < discovery_time;
-  return may_be_old && (newest_.number == 0 || was_stopped) ? Hindrance::publisher : Hindrance::none;
+  return may_be_old && (newest_.number == 0 || was_stopped || newest_.needs_pause) ? Hindrance::publisher
+                                                                                   : Hindrance::none;
 }
 
 TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next, bool was_stopped) const
@@ -173,8 +176,22 @@ void TeleopTopic::serve(const std::stop_token & stop)
       stop_request_ = std::make_shared<StopRequest>();
     }
     Latency latency;
-    log_end(run_session(served, latency), latency);
+    const Outcome outcome = run_session(served, latency);
+    if (outcome.code() != ErrorCode::timeout) {
+      served = require_pause(served);
+    }
+    log_end(outcome, latency);
   }
+}
+
+std::uint64_t TeleopTopic::require_pause(std::uint64_t session)
+{
+  const std::lock_guard lock(mutex_);
+  if (newest_.session != session && newest_.follows_pause) {
+    return session;
+  }
+  newest_.needs_pause = true;
+  return newest_.session;
 }
 
 Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)

@@ -21,9 +21,9 @@ namespace ur_ros_rtde {
 /// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
-/// of `timeout`; after a stop the publisher itself has to pause (has_paused), a delay on the way or of this
-/// host is not enough. A publisher whose last message before the pause commanded a motion, or that was
-/// stopped since, was interrupted, and one that was there before this object, or beside the one that was
+/// of `timeout`; unless they had ended, the publisher itself has to pause (has_paused), a delay on the way or
+/// of this host is not enough. A publisher whose last message before the pause commanded a motion, or that
+/// was stopped since, was interrupted, and one that was there before this object, or beside the one that was
 /// stopped, has begun without it: neither a hung program that goes on nor a restarted driver may move the
 /// arm. Their next session starts with a message that commands no motion (TargetFollower::moves). The start
 /// and the end of each session are logged once.
@@ -66,6 +66,8 @@ class TeleopTopic {
     rcl_cxx::MessageInfo first;        ///< of its session
     Clock::time_point silent_since{};  ///< before that session
     bool moves = false;                ///< commands a motion
+    bool follows_pause = false;        ///< its session: of the publisher (has_paused)
+    bool needs_pause = false;          ///< the next session: this one did not end for lack of messages
     Hindrance hindrance{};             ///< of its session, if that has not been started yet
     bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
   };
@@ -86,6 +88,8 @@ class TeleopTopic {
   /// Messages may still show that the publisher is a new one, whose first messages were lost.
   bool is_known(const Message & message) const;
   void serve(const std::stop_token & stop);
+  /// After the end of this session, not for lack of messages. Returns the newest session that must not start.
+  std::uint64_t require_pause(std::uint64_t session);
   Outcome run_session(std::uint64_t session, Latency & latency);
   /// Tells the session of `lease` to end; the arm stops without waiting for its thread.
   void end_session(const Error & why);

@@ -294,6 +294,23 @@ def test_a_stall_of_the_driver_does_not_undo_a_stop(robot, driver, simulator):
         assert len(log_lines(driver, started)) == before + 1, "a session has begun after the stop"
 
 
+def test_a_stall_of_the_driver_does_not_undo_the_end_of_a_session(robot, driver, simulator):
+    started, ended = "/twist: teleoperation started", "/twist: messages are ignored: the control program"
+    before = len(log_lines(driver, started)), len(log_lines(driver, ended))
+    with Operator(robot, driver, TwistStamped, "twist", lambda t: twist_message("base")) as operator:
+        wait_for(lambda: len(log_lines(driver, started)) > before[0], 10.0, "the session")
+        simulator.control("pause_program")
+        wait_for(lambda: len(log_lines(driver, ended)) > before[1], 10.0, "the end of the session")
+        make_ready(robot)
+        driver.signal(signal.SIGSTOP)
+        pause()
+        driver.signal(signal.SIGCONT)
+        make_ready(robot)
+        operator.publishes(3)
+        operator.message = lambda t: twist_message("base", -0.05)
+        operator.does_not_move_the_arm(simulator)
+
+
 def test_a_stall_of_the_driver_does_not_undo_a_stop_of_two_publishers(robot, driver, simulator):
     """The first message after the stall may be of the other one than the last message before it."""
     def publisher():

@@ -176,7 +176,7 @@ void MotionStopper::request(const std::shared_ptr<Permit> & holder, const StopOp
   if (revoked_now) {
     begin_operation(options);
   } else {
-    strengthen(options);
+    shorten(options.timeout);
   }
 }
 
@@ -208,10 +208,12 @@ void MotionStopper::require(const StopOptions & options)
   operation_->options = joined;
 }
 
-void MotionStopper::strengthen(const StopOptions & options)
+void MotionStopper::shorten(const std::optional<milliseconds> & timeout)
 {
   const std::lock_guard lock(mutex_);
-  if (operation_ && !(stronger(operation_->options, options) == operation_->options)) {
+  if (operation_ && timeout && (!operation_->options.timeout || *timeout < *operation_->options.timeout)) {
+    StopOptions options = operation_->options;
+    options.timeout = timeout;
     require(options);
   }
 }

@@ -59,6 +59,8 @@ class MotionStopper {
   Stopping pause(const Permit & holder, const StopOptions & options);
   /// For a holder that is told to end because of `why`: begins to stop the arm. A holder that brakes by
   /// itself may do so under supervision: it has to begin at once, and be at rest within `braking_timeout`.
+  /// If a stop has taken the arm out of its hands before, of the options only the timeout applies to that
+  /// one.
   void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
                std::chrono::milliseconds braking_timeout);
   bool is_stopping() const;
@@ -105,8 +107,8 @@ class MotionStopper {
   Stopping current();
   /// An operation with at least these decelerations. The mutex must be held.
   void require(const StopOptions & options);
-  /// The stop under way, if there is one, has to fulfil these options too.
-  void strengthen(const StopOptions & options);
+  /// The stop under way, if there is one, has to end within this time too: StopOptions::timeout.
+  void shorten(const std::optional<std::chrono::milliseconds> & timeout);
   void serve(const std::stop_token & stop);
   void execute_operation(std::unique_lock<std::mutex> & lock);
   void supervise();

@@ -1,4 +1,4 @@
-"""Shows the state of robot and driver, the active goal, the arm in numbers, and rejections."""
+"""Shows the state of robot and driver, the active goal, the arm, inputs and outputs in numbers, and rejections."""
 
 import html
 import math
@@ -8,6 +8,7 @@ from typing import Any, List, Sequence, Tuple
 from ..state.robot_state import RobotState
 
 ARM_PERIOD = 0.2  # s; each browser receives every change
+TOOL_PIN = 16  # the first one of the tool
 JOINTS = ("Shoulder pan", "Shoulder lift", "Elbow", "Wrist 1", "Wrist 2", "Wrist 3")
 
 
@@ -52,6 +53,21 @@ def arm_rows(state: RobotState) -> List[Tuple[str, str]]:
     return rows
 
 
+def _pins(on: Sequence[bool]) -> str:
+    """Returns the digital signals that are on."""
+    return ", ".join(f"tool {pin - TOOL_PIN}" if pin >= TOOL_PIN else str(pin) for pin, is_on in enumerate(on) if is_on) or "all off"
+
+
+def signal_rows(state: RobotState) -> List[Tuple[str, str]]:
+    """Returns titles and texts of inputs and outputs."""
+    signals = state.signals
+    if signals is None:
+        return []
+    return [("Digital inputs on", _pins(signals.digital_inputs)), ("Digital outputs on", _pins(signals.digital_outputs)),
+            ("Analog inputs, A or V", " ".join(f"{value:8.4f}" for value in signals.analog_inputs)),
+            ("Analog outputs, A or V", " ".join(f"{value:8.4f}" for value in signals.analog_outputs))]
+
+
 TITLE = "padding:2px 12px 2px 0;opacity:.7;vertical-align:top"
 TEXT = "white-space:pre-wrap;font-variant-numeric:tabular-nums"
 
@@ -81,7 +97,7 @@ class StatePanel:
             self._shown = shown
         if time.monotonic() - self._arm_shown > ARM_PERIOD:
             self._arm_shown = time.monotonic()
-            self._arm.content = _as_html(arm_rows(state))
+            self._arm.content = _as_html(arm_rows(state) + signal_rows(state))
         self._progress.visible = state.goal is not None and state.goal.progress > 0.0
         if state.goal is not None:
             self._progress.value = round(100.0 * state.goal.progress)

@@ -10,9 +10,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
 from ur_ros_rtde_description.models import JOINTS
 
-from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, GoalRejected, RobotMode, SafetyMode
+from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, GoalRejected, IOState, RobotMode, SafetyMode
 
-from ..state.robot_state import MAX_REJECTIONS, DriverStatus, Joints, Pose, Rejection, RobotState
+from ..state.robot_state import MAX_REJECTIONS, DriverStatus, Joints, Pose, Rejection, RobotState, Signals
 from .latest_topic import LatestTopic
 from .nodes import Nodes
 
@@ -50,6 +50,7 @@ class RobotTopics:
         self._target = self._latest(JointState, "target_joint_states")
         self._tcp_pose = self._latest(PoseStamped, "tcp_pose")
         self._wrench = self._latest(WrenchStamped, "wrench")
+        self._signals = self._latest(IOState, "io_state")
         self._actual: Optional[LatestTopic] = None
         self._subscribe()
 
@@ -102,6 +103,9 @@ class RobotTopics:
         if wrench is not None:
             f, t = wrench.wrench.force, wrench.wrench.torque
             state.wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z))
+        io = self._signals.take()
+        if io is not None:
+            state.signals = Signals(*(tuple(values) for values in (io.digital_inputs, io.digital_outputs, io.analog_inputs, io.analog_outputs)))
         state.age = time.monotonic() - self._last_received
 
     def _learn_names(self, message: JointState) -> None:

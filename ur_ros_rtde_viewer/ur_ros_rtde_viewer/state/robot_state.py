@@ -28,6 +28,16 @@ class Pose:
 
 
 @dataclass(frozen=True)
+class Signals:
+    """Inputs and outputs. Digital ones by pin: 0-7 standard, 8-15 configurable, 16-17 tool. Analog ones of the control box, in A or V."""
+
+    digital_inputs: Tuple[bool, ...]
+    digital_outputs: Tuple[bool, ...]
+    analog_inputs: Tuple[float, ...]
+    analog_outputs: Tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class DriverStatus:
     name: str  # "READY"
     cause: int  # ErrorCode
@@ -58,6 +68,7 @@ class RobotState:
     target_joints: Optional[Joints] = None
     tcp_pose: Optional[Pose] = None  # in base
     wrench: Optional[np.ndarray] = None  # N, N m, in the TCP frame
+    signals: Optional[Signals] = None
     robot_mode: str = ""
     safety_mode: str = ""
     program_running: Optional[bool] = None
