@@ -164,6 +164,62 @@ TEST(ArbiterTest, TheNewestClaimWinsOverOneThatRetries)
   EXPECT_TRUE(*newer);
 }
 
+/// A claim that waits has no right to what another one takes between the release and its next look.
+class TakenResourceTest : public testing::Test {
+ protected:
+  TakenResourceTest()
+  {
+    taking_.preempt = [this](const Error &) {
+      ++asked_;
+      taken_.reset();
+    };
+  }
+  void take() { taken_ = std::move(*arbiter_.acquire(taking_, admit)); }
+  std::string owner() const
+  {
+    const auto holder = arbiter_.holder(Resource::motion);
+    return holder ? holder->claim().owner : "";
+  }
+
+  Arbiter arbiter_;
+  Claim taking_ = claim(Resource::motion, "move_l", "2");
+  std::optional<Lease> taken_;
+  int asked_ = 0;
+};
+
+TEST_F(TakenResourceTest, IsPreemptedFromTheHolderThatCameAfterTheRelease)
+{
+  std::optional<Lease> held;
+  auto first = claim(Resource::motion, "move_j", "1");
+  first.preempt = [&](const Error &) {
+    held.reset();
+    take();
+  };
+  held = std::move(*arbiter_.acquire(std::move(first), admit));
+  const auto stop = preempting(arbiter_, claim(Resource::motion, "stop", "3"), 10s);
+  ASSERT_TRUE(stop) << stop.error().message;
+  EXPECT_EQ(asked_, 1);
+  EXPECT_EQ(owner(), "stop");
+}
+
+TEST_F(TakenResourceTest, IsPreemptedFromTheHolderThatCameBetweenTwoAttempts)
+{
+  int attempts = 0;
+  const auto admitted_the_second_time = [&]() -> Expected<Generation> {
+    return ++attempts < 2 ? failure(ErrorCode::busy, "stopping") : Expected<Generation>(Generation{});
+  };
+  const auto taken_in_between = [this] {
+    take();
+    return true;
+  };
+  const auto stop =
+      arbiter_.acquire_preempting(claim(Resource::motion, "stop", "3"), admitted_the_second_time,
+                                  taken_in_between, Permit::Clock::now() + 10s, {});
+  ASSERT_TRUE(stop) << stop.error().message;
+  EXPECT_EQ(asked_, 1);
+  EXPECT_EQ(owner(), "stop");
+}
+
 TEST(ArbiterTest, GrantsAModeDuringAMotionButNotDuringAScript)
 {
   Arbiter arbiter;

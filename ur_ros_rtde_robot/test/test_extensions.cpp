@@ -266,6 +266,28 @@ TEST_F(ExtensionsTest, DoNotEndAModeThatTheyDoNotStart)
   EXPECT_FALSE(is_on("freedrive"));
 }
 
+TEST_F(ExtensionsTest, AreStoppedBeforeTheModeOfACommand)
+{
+  start_with({extension("loop", "while True:\n  sync()\nend\n")});
+  Claim switching = claim();
+  switching.switches_hand_guiding = true;
+  const auto lease = robot->acquire(switching);
+  ASSERT_TRUE(lease);
+  ASSERT_TRUE(robot->control(*lease)->freedriveMode());
+  ASSERT_TRUE(eventually([&] { return is_on("freedrive"); }));
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    return robot->activities().contains(Activity::extension)
+               ? std::optional(Error{ErrorCode::canceled, "canceled"})
+               : std::nullopt;
+  };
+  const auto generation = robot->generation();
+  EXPECT_EQ(robot->run_extension(*lease, "loop", options).error().code, ErrorCode::canceled) << log.text();
+  EXPECT_FALSE(is_on("freedrive"));
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_TRUE(robot->is_current(generation)) << "the control program goes on";
+}
+
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
 {
   robot = std::make_unique<Robot>(robot_options(), log.function());

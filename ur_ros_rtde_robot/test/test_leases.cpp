@@ -441,6 +441,35 @@ TEST_F(LeaseTest, IsNotGrantedToAClaimThatWaitedWhenTheSafeguardStopIsOver)
   controller.control({{"command", "safeguard"}, {"open", false}});
 }
 
+/// The holder that a stop tells to end gives the arm back at once, while it still moves.
+TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm)
+{
+  Claim holder = claim();
+  std::atomic<bool> asked{false};
+  holder.preempt = [&](const Error &) { asked = true; };
+  std::optional<Lease> held = std::move(*robot->acquire(holder));
+  move(*held);
+  std::atomic<bool> was_moving{false};
+  std::future<Expected<Lease>> next = std::async(std::launch::async, [&] {
+    auto lease = robot->acquire_preempting(claim(), 60s);
+    was_moving = robot->is_moving();
+    return lease;
+  });
+  ASSERT_TRUE(eventually([&] { return asked.load(); }));
+  StopOptions gentle;
+  gentle.joint_deceleration = 1.0;
+  const auto stopping = robot->begin_stop(gentle, stopped_by_the_driver());
+  held.reset();
+  EXPECT_TRUE(robot->is_stopping()) << "the arm was at rest before the release";
+  ASSERT_EQ(next.wait_for(40s), std::future_status::ready);
+  const auto granted = next.get();
+  ASSERT_TRUE(granted) << granted.error().message;
+  EXPECT_FALSE(was_moving) << "it was granted while the arm moved";
+  ASSERT_EQ(stopping.wait_for(0s), std::future_status::ready);
+  EXPECT_TRUE(stopping.get());
+  EXPECT_TRUE(stays_at_rest());
+}
+
 TEST_F(LeaseTest, IsGrantedAfterTheStopOfThePreviousHolder)
 {
   std::optional<Lease> held;

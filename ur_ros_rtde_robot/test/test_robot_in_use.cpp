@@ -53,6 +53,21 @@ TEST_F(SecondDriverTest, IsRejectedInTheOtherRegisterRange)
   EXPECT_EQ(told().find("register_range"), std::string::npos) << "that would not help: " << told();
 }
 
+TEST_F(SecondDriverTest, StopsTheProgramOfTheFirstIfAsked)
+{
+  make_both();
+  make_second();
+  ASSERT_TRUE(second_is(RobotState::stopped, ErrorCode::robot_in_use)) << told();
+  EXPECT_TRUE(second->stop_motion()) << "the end of a goal or of the driver leaves it alone";
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+  StopOptions options;
+  options.ends_foreign_program = true;
+  const auto report = second->stop_motion(options);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::program_stopped);
+  EXPECT_TRUE(becomes_ready()) << "the first driver starts its program again";
+}
+
 TEST_F(SecondDriverTest, DoesNotStopTheFirstWhenThatLosesAConnection)
 {
   make_both();

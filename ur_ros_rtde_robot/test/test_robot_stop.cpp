@@ -207,6 +207,24 @@ TEST_F(StopTest, EndsAForeignProgramThatStandsIfAsked)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)
+{
+  make_both();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def f():\n while True:\n  sync()\n end\nend\n"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  StopOptions options;
+  options.ends_foreign_program = true;
+  const double begin = robot->latest()->controller_time;
+  const auto report = robot->stop_motion(options);
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("is not of this driver"), std::string::npos)
+      << report.error().message;
+  EXPECT_LT(robot->latest()->controller_time - begin, 1.0) << "it waits for no watchdog";
+  controller.control({{"command", "remote_control"}, {"on", true}});
+}
+
 TEST_F(StopTest, LeavesAForeignProgramAloneThatIsPaused)
 {
   make_both();

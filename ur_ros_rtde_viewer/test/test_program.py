@@ -182,6 +182,14 @@ def test_another_version_of_viser_is_named_with_the_remedy(monkeypatch, capfd):
     assert "viser 2.0.0 is installed" in (message := capfd.readouterr().err) and "pip install viser==" in message
 
 
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_page_is_dark_on_request(dark):
+    server = start_server("127.0.0.1", 0, dark=dark)
+    messages = server._websock_server._broadcast_buffer.message_from_id.values()
+    assert [message.dark_mode for message in messages if hasattr(message, "dark_mode")] == [dark]
+    stop_server(server)
+
+
 def test_a_stopped_server_releases_its_port():
     first = start_server("127.0.0.1", 0)
     port = first.get_port()

@@ -106,6 +106,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--recordings", default=".", metavar="FOLDER",
                         help="folder for recordings, on the machine of the driver (default: the current folder)")
     parser.add_argument("--control", action="store_true", help="allow commands from the page")
+    parser.add_argument("--dark", action="store_true", help="light text on a dark page")
     parser.add_argument("--plan", default="", metavar="FILE", help="show a plan of `./ur plan FILE --json` instead of a robot")
 
 

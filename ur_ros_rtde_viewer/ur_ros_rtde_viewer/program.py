@@ -43,7 +43,7 @@ def _serve(options: argparse.Namespace) -> None:
     from .page.server import new_token, start_server, stop_server, url
 
     token = new_token(options.address) if options.token is None else "" if options.token == "none" else options.token
-    server = start_server(options.address, options.port, token)
+    server = start_server(options.address, options.port, token, options.dark)
     fastdds_profile.use()
     from .ros.nodes import Nodes
     from .viewer import Viewer

@@ -6,7 +6,6 @@
 #include <ur_ros_rtde_msgs/action/dashboard_command.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/dashboard_text.hpp>
-#include <utility>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/dashboard_run.hpp"
@@ -54,6 +53,8 @@ class DashboardCommand : public DashboardPlugin {
   /// The command ends the program of the robot. Its goals also end a script of the driver that has not begun
   /// yet, which the dashboard server does not know, and make_ready.
   virtual bool stops_program() const { return false; }
+  /// Of those: the arm has no power afterwards. A request of make_ready that is under way ends before.
+  virtual bool powers_off() const { return false; }
   /// The command stops the arm: its goals are served by the thread that serves stops, beside the limit of
   /// goals.
   virtual bool stops_arm() const { return stops_program(); }
@@ -97,7 +98,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
                                     : tl::unexpected(*check.error());
     if (ready && command_.stops_program()) {
-      ended_script_ = host_.end_script(stopped_through_dashboard(name()));
+      hold_ = host_.end_script(stopped_through_dashboard(name()));
     }
     return ready;
   }
@@ -105,8 +106,10 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   {
     run_.emplace(host_.connection(), shared_stop_request(),
                  [this](const void * feedback) { handle().publish_feedback(feedback); });
-    const auto ended_script = std::exchange(ended_script_, {});
-    ended_script.wait_for_startup_requests();
+    const auto hold = std::move(hold_);
+    if (command_.powers_off()) {
+      host_.wait_for_startup_requests();
+    }
     return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
   }
   void send_result(const Outcome & outcome, bool abandoned) override
@@ -124,7 +127,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   DashboardCommand & command_;
   DashboardHost & host_;
   const typename A::Goal & message_;
-  EndedScript ended_script_;  ///< until the program of the robot has been stopped
+  std::shared_ptr<void> hold_;  ///< of the control program, until the program of the robot has been stopped
   std::optional<Run> run_;
 };
 

@@ -53,14 +53,6 @@ class PluginHost {
   Goals goals_;
 };
 
-/// A script that CommandHost::end_script() has ended.
-struct EndedScript {
-  /// The control program is not started in its place while this object exists.
-  std::shared_ptr<void> hold;
-  /// See CommandHost::wait_for_startup_requests().
-  std::function<void()> wait_for_startup_requests = [] {};
-};
-
 class CommandHost : public PluginHost {
  public:
   struct Options {
@@ -81,15 +73,16 @@ class CommandHost : public PluginHost {
   /// Robot::begin_stop(), after which no goal moves the arm that was received before.
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
   /// For a command that stops the program through the dashboard server: ends the script that runs or is about
-  /// to run, and no goal moves the arm that was received before.
-  EndedScript end_script(const Error & why);
+  /// to run, and no goal moves the arm that was received before. The control program is not started in its
+  /// place while the returned object exists.
+  std::shared_ptr<void> end_script(const Error & why);
   /// Number of calls of begin_stop() and end_script().
   std::uint32_t stops() const { return stops_; }
   /// For a request that brings the arm into operation, which is under way while the returned object exists.
   /// Null, and it must not be sent, if `stops` are not all stops.
   std::shared_ptr<void> begin_startup_request(std::uint32_t stops);
   /// For a command that powers the arm off, after a stop has begun: waits until no request is under way that
-  /// would power it on again.
+  /// would power it on again, but at most 2.5 s.
   void wait_for_startup_requests();
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
@@ -117,20 +110,28 @@ class CommandHost : public PluginHost {
 
 class DashboardHost : public PluginHost {
  public:
-  /// CommandHost::end_script() of the command server in this process.
-  using EndScript = std::function<EndedScript(const Error & why)>;
-
+  /// `commands`: of the command server in this process; null if there is none.
   DashboardHost(rcl_cxx::Node & node, bool servers_on_demand, DashboardConnection & connection,
-                EndScript end_script)
-      : PluginHost(node, servers_on_demand), connection_(connection), end_script_(std::move(end_script))
+                CommandHost * commands)
+      : PluginHost(node, servers_on_demand), connection_(connection), commands_(commands)
   {
   }
   DashboardConnection & connection() { return connection_; }
-  EndedScript end_script(const Error & why) const { return end_script_(why); }
+  /// The same as of CommandHost.
+  std::shared_ptr<void> end_script(const Error & why) const
+  {
+    return commands_ != nullptr ? commands_->end_script(why) : nullptr;
+  }
+  void wait_for_startup_requests() const
+  {
+    if (commands_ != nullptr) {
+      commands_->wait_for_startup_requests();
+    }
+  }
 
  private:
   DashboardConnection & connection_;
-  const EndScript end_script_;
+  CommandHost * const commands_;
 };
 
 }  // namespace ur_ros_rtde

@@ -126,7 +126,7 @@ class Run {
 
   /// For a command without a lease that brings the arm into operation: calls `request`, which sends one
   /// request and waits for the answer, unless the goal has to end or there was a stop; then throws RobotError
-  /// with the reason. A command that powers the arm off waits for the call: its request is the last one.
+  /// with the reason. A command that powers the arm off waits for the call, up to 2.5 s.
   void unless_stopped(const std::function<void()> & request) const;
 
   /// Logs a warning for this goal and appends it to the message of the result.

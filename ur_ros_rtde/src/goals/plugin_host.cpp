@@ -1,7 +1,5 @@
 #include "ur_ros_rtde/plugin_host.hpp"
 
-#include <tuple>
-
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -50,7 +48,7 @@ std::shared_future<Expected<StopReport>> CommandHost::begin_stop(const StopOptio
   return robot_.begin_stop(options, why);
 }
 
-EndedScript CommandHost::end_script(const Error & why)
+std::shared_ptr<void> CommandHost::end_script(const Error & why)
 {
   ++stops_;
   auto hold = robot_.hold_program();
@@ -58,7 +56,7 @@ EndedScript CommandHost::end_script(const Error & why)
   if (holder && holder->resource == Resource::script) {
     robot_.begin_stop({}, why);
   }
-  return {std::move(hold), [this] { wait_for_startup_requests(); }};
+  return hold;
 }
 
 std::shared_ptr<void> CommandHost::begin_startup_request(std::uint32_t stops)
@@ -68,7 +66,9 @@ std::shared_ptr<void> CommandHost::begin_startup_request(std::uint32_t stops)
 
 void CommandHost::wait_for_startup_requests()
 {
-  std::ignore = startup_requests_.wait_until_none(startup_request_timeout);
+  if (!startup_requests_.wait_until_none(startup_request_timeout)) {
+    RCL_CXX_WARN(node().get_logger(), "a request that powers the arm on is still under way: check the arm");
+  }
 }
 
 void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)

@@ -105,7 +105,7 @@ Status Run::stop_except_kept(const StopOptions & options)
   if (robot().is_at_rest_except(options.keep)) {
     return {};
   }
-  // It stays armed until the arm has to be stopped, or until the end of the goal.
+  // Contact detection stays armed until the arm has to be stopped, or until the end of the goal.
   const Activities left = robot().activities().without(options.keep);
   if (left == Activities(Activity::contact_detection) && !robot().is_moving()) {
     return {};
@@ -193,6 +193,21 @@ Outcome Run::trigger(double timeout)
     return stop_reason();
   };
   return context_.robot.run_extension(*context_.lease, context_.command->plugin, options);
+}
+
+void Run::unless_stopped(const std::function<void()> & request) const
+{
+  if (context_.command == nullptr) {
+    throw std::logic_error("Run::unless_stopped() needs a goal");
+  }
+  const auto under_way = context_.command->host.begin_startup_request(context_.stops_before);
+  if (const auto why = context_.stop_request->reason()) {
+    throw RobotError(*why);
+  }
+  if (!under_way) {
+    throw RobotError(stopped_by_the_driver());
+  }
+  request();
 }
 
 }  // namespace ur_ros_rtde

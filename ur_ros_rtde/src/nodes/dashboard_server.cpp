@@ -6,16 +6,14 @@
 
 namespace ur_ros_rtde {
 
-DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context,
-                                 DashboardHost::EndScript end_script)
+DashboardServer::DashboardServer(const rcl_cxx::Context::SharedPtr & context, CommandHost * commands)
     : node_(std::make_shared<rcl_cxx::Node>(context, "dashboard_server"))
 {
   DashboardConnectionOptions options;
   options.address = declare_robot_ip(*node_);
   choice_ = declare_plugin_choice(*node_);
   connection_ = std::make_unique<DashboardConnection>(options, log_connection(*node_));
-  host_ = std::make_unique<DashboardHost>(*node_, declare_servers_on_demand(*node_), *connection_,
-                                          std::move(end_script));
+  host_ = std::make_unique<DashboardHost>(*node_, declare_servers_on_demand(*node_), *connection_, commands);
 }
 
 DashboardServer::~DashboardServer()

@@ -13,10 +13,8 @@ namespace ur_ros_rtde {
 /// The node dashboard_server: the connection to the dashboard server, and the dashboard plugins.
 class DashboardServer : public Server {
  public:
-  /// `end_script`: of the command server in the same process.
-  explicit DashboardServer(
-      const rcl_cxx::Context::SharedPtr & context,
-      DashboardHost::EndScript end_script = [](const Error &) { return EndedScript{}; });
+  /// `commands`: of the command server in the same process; null if there is none.
+  explicit DashboardServer(const rcl_cxx::Context::SharedPtr & context, CommandHost * commands = nullptr);
   ~DashboardServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }

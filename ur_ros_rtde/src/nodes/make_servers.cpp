@@ -36,8 +36,7 @@ Servers make_driver(const rcl_cxx::Context::SharedPtr & context)
 {
   auto commands = std::make_unique<CommandServer>(context);
   auto state = std::make_unique<SharedStateServer>(context, commands->robot());
-  auto dashboard = std::make_unique<DashboardServer>(
-      context, [&host = commands->host()](const Error & why) { return host.end_script(why); });
+  auto dashboard = std::make_unique<DashboardServer>(context, &commands->host());
   Servers servers;
   servers.push_back(std::move(state));  // outlives the robot, which calls it
   servers.push_back(std::move(commands));

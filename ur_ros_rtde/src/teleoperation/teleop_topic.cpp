@@ -86,9 +86,11 @@ void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::Messa
   {
     const std::lock_guard lock(mutex_);
     Message next = following(std::move(target), info, sample);
-    const bool was_logged =
-        next.session == newest_.session && next.hindrance == newest_.hindrance && is_known(newest_);
-    hindrance = is_known(next) && !was_logged ? next.hindrance : Hindrance::none;
+    next.logged = next.session == newest_.session && next.hindrance == newest_.hindrance && newest_.logged;
+    if (!next.logged && is_known(next)) {
+      hindrance = next.hindrance;
+      next.logged = true;
+    }
     newest_ = std::move(next);
   }
   changed_.notify_all();
@@ -130,9 +132,11 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_first(const Message & next, boo
   if (newest_.number > 0 && next.info.publisher == newest_.info.publisher) {
     return newest_.moves || was_stopped ? Hindrance::gap : Hindrance::none;
   }
-  const bool may_be_old = next.info.number != 1u && next.arrived - next.silent_since < discovery_time;
-  return may_be_old && (newest_.number == 0 || was_stopped || newest_.needs_pause) ? Hindrance::publisher
-                                                                                   : Hindrance::none;
+  // A publisher that counts its messages shows its age later.
+  const bool was_ended = newest_.number > 0 && (was_stopped || newest_.needs_pause);
+  const bool is_soon = next.arrived - next.silent_since < discovery_time;
+  const bool may_be_old = was_ended ? next.info.number || is_soon : newest_.number == 0 && is_soon;
+  return may_be_old && next.info.number != 1u ? Hindrance::publisher : Hindrance::none;
 }
 
 TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next, bool was_stopped) const
@@ -144,8 +148,8 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next,
     return Hindrance::stop;
   }
   const auto age = age_of_publisher(next.first, next.info, options_.timeout);
-  const bool is_new =
-      newest_.hindrance == Hindrance::publisher && age && *age < seconds(next.arrived - next.silent_since);
+  const bool is_new = newest_.hindrance == Hindrance::publisher && age &&
+                      *age + options_.timeout < seconds(next.arrived - next.silent_since);
   return is_new || !next.moves ? Hindrance::none : newest_.hindrance;
 }
 
@@ -166,6 +170,7 @@ void TeleopTopic::serve(const std::stop_token & stop)
   name_thread("stream " + topic_);
   std::uint64_t served = 0;
   while (true) {
+    rcl_cxx::PublisherId publisher{};
     {
       std::unique_lock lock(mutex_);
       const auto starts = [&] { return newest_.session != served && newest_.may_start(); };
@@ -173,21 +178,23 @@ void TeleopTopic::serve(const std::stop_token & stop)
         return;
       }
       served = newest_.session;
+      publisher = newest_.first.publisher;
       stop_request_ = std::make_shared<StopRequest>();
     }
     Latency latency;
     const Outcome outcome = run_session(served, latency);
     if (outcome.code() != ErrorCode::timeout) {
-      served = require_pause(served);
+      served = require_pause(served, publisher);
     }
     log_end(outcome, latency);
   }
 }
 
-std::uint64_t TeleopTopic::require_pause(std::uint64_t session)
+std::uint64_t TeleopTopic::require_pause(std::uint64_t session, const rcl_cxx::PublisherId & publisher)
 {
   const std::lock_guard lock(mutex_);
-  if (newest_.session != session && newest_.follows_pause) {
+  const bool is_known = newest_.first.publisher == publisher || newest_.first.number == 1u;
+  if (newest_.session != session && newest_.follows_pause && is_known) {
     return session;
   }
   newest_.needs_pause = true;
@@ -313,7 +320,7 @@ void TeleopTopic::log_hindrance(Hindrance hindrance) const
   }
   const std::string why =
       hindrance == Hindrance::publisher
-          ? "their publisher may have been there before a stop or the start of the driver"
+          ? "their publisher may have been there before the last session ended, or before the driver"
           : fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout);
   log_(LogLevel::warn,
        fmt::format("{}: messages are ignored: {}; teleoperation starts with a message that commands no "

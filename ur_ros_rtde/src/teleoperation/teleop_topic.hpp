@@ -21,12 +21,12 @@ namespace ur_ros_rtde {
 /// pause of `timeout` and acquires Resource::motion; it is rejected if another goal or topic holds it. The
 /// session ends without messages for `timeout`, with an invalid message, when it is preempted, and when the
 /// robot stops. Then the arm decelerates to standstill, and messages are ignored until there has been a pause
-/// of `timeout`; unless they had ended, the publisher itself has to pause (has_paused), a delay on the way or
-/// of this host is not enough. A publisher whose last message before the pause commanded a motion, or that
-/// was stopped since, was interrupted, and one that was there before this object, or beside the one that was
-/// stopped, has begun without it: neither a hung program that goes on nor a restarted driver may move the
-/// arm. Their next session starts with a message that commands no motion (TargetFollower::moves). The start
-/// and the end of each session are logged once.
+/// of `timeout`; unless the messages had ended, the publisher itself has to pause (has_paused), a delay on
+/// the way or of this host is not enough. A publisher whose last message before the pause commanded a motion,
+/// or that was stopped since, was interrupted, and one that was there before this object, or beside the one
+/// that was stopped, has begun without it: neither a hung program that goes on nor a restarted driver may
+/// move the arm. Their next session starts with a message that commands no motion (TargetFollower::moves).
+/// The start and the end of each session are logged once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
@@ -69,6 +69,7 @@ class TeleopTopic {
     bool follows_pause = false;        ///< its session: of the publisher (has_paused)
     bool needs_pause = false;          ///< the next session: this one did not end for lack of messages
     Hindrance hindrance{};             ///< of its session, if that has not been started yet
+    bool logged = false;               ///< its hindrance
     bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
   };
 
@@ -88,8 +89,9 @@ class TeleopTopic {
   /// Messages may still show that the publisher is a new one, whose first messages were lost.
   bool is_known(const Message & message) const;
   void serve(const std::stop_token & stop);
-  /// After the end of this session, not for lack of messages. Returns the newest session that must not start.
-  std::uint64_t require_pause(std::uint64_t session);
+  /// After the end of this session, which this publisher began, not for lack of messages. Returns the newest
+  /// session that must not start.
+  std::uint64_t require_pause(std::uint64_t session, const rcl_cxx::PublisherId & publisher);
   Outcome run_session(std::uint64_t session, Latency & latency);
   /// Tells the session of `lease` to end; the arm stops without waiting for its thread.
   void end_session(const Error & why);

@@ -15,6 +15,7 @@ EXPORT_DASHBOARD_COMMAND(PowerOn, "dashboard/power_on", DashboardCommand,
 class PowerOff : public StoppingCommand {
  public:
   PowerOff() : StoppingCommand({"power off", "Powering off", {"robotmode", {"POWER_OFF"}}}) {}
+  bool powers_off() const override { return true; }
 };
 UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
 EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardCommand,
@@ -22,6 +23,7 @@ EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardComma
 class Shutdown : public StoppingCommand {
  public:
   Shutdown() : StoppingCommand({"shutdown", "Shutting down"}) {}
+  bool powers_off() const override { return true; }
 };
 UR_ROS_RTDE_EXPORT(Shutdown, "dashboard/shutdown")
 

@@ -14,6 +14,9 @@ from ur_ros_rtde_msgs.action import (
     EnableExternalFtSensor,
     ForceMode,
     Freedrive,
+    GetFlag,
+    GetInverseKinematics,
+    GetPose,
     MoveJ,
     MoveL,
     SetExternalForceTorque,
@@ -193,6 +196,38 @@ def test_direct_torque_aborts_when_a_joint_exceeds_max_joint_speed(robot):
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
     assert "max_joint_speed" in result.message
     wait_for(lambda: is_at_rest(robot), 15.0, "standstill")
+
+
+# They are answered by the control program.
+QUERIES = {"get_inverse_kinematics": GetInverseKinematics, "get_tcp_offset": GetPose, "is_steady": GetFlag}
+
+
+def test_queries_are_rejected_during_direct_torque_and_answered_afterwards(robot, simulator):
+    fields = {name: {} for name in QUERIES}
+    fields["get_inverse_kinematics"] = {"pose": get_tcp_pose(robot)}
+    for name, action in QUERIES.items():  # their servers are known from now on
+        robot.send(action, name, **fields[name]).succeeded()
+    torque = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0] * 6, duration=30.0, max_joint_speed=3.0)
+    torque.wait_until(lambda: torque.feedback, 10.0, "the torques")
+    for name, action in QUERIES.items():
+        rejected = robot.send(action, name, **fields[name])
+        assert not rejected.accepted, f"{name}: {rejected.result().message}"
+        rejection = robot.rejection(rejected)
+        assert rejection.error_code == ErrorCode.BUSY and "direct_torque occupies every cycle" in rejection.message, rejection
+    assert robot.send(GetFlag, "is_program_running").succeeded().value, "the driver knows this without the control program"
+    assert not torque.is_finished() and simulator.state()["program"]["state"] == "PLAYING"
+    torque.cancel()
+    assert torque.wait_for_result()[0] == GoalStatus.STATUS_CANCELED
+
+    def accepted():
+        """The end of the torques has ended the control program, which is started again."""
+        query = robot.send(GetFlag, "is_steady")
+        assert query.accepted or robot.rejection(query).error_code != ErrorCode.BUSY, robot.rejection(query).message
+        return query.accepted
+
+    wait_for(accepted, 15.0, "the control program")
+    for name, action in QUERIES.items():
+        robot.send(action, name, **fields[name]).succeeded()
 
 
 def test_uses_the_readings_of_an_external_sensor(robot, simulator):

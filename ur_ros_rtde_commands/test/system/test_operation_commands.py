@@ -167,35 +167,37 @@ class RejectsStop(PassesOn):
 
 
 class HoldsMakeReady(PassesOn):
-    """Holds one line of make_ready until the arm is powered off: the answer to `robotmode`, or `power on`."""
+    """Holds one line of make_ready: the answer to `robotmode` until the arm is powered off, or `power on` until make_ready is being ended."""
 
     held = ""
     holding = threading.Event()
+    stopped = threading.Event()  # the goal of make_ready is being ended
     powered_off = threading.Event()
     passed_on = []
     is_make_ready = False  # the client of this connection: no other one asks for the safety mode
 
     @classmethod
     def arm(cls, held):
-        cls.held, cls.holding, cls.powered_off, cls.passed_on = held, threading.Event(), threading.Event(), []
+        cls.held, cls.passed_on = held, []
+        cls.holding, cls.stopped, cls.powered_off = (threading.Event() for _ in range(3))
 
     def answer(self, line):
         text = line.strip().decode()
         self.is_make_ready = self.is_make_ready or text == "safetymode"
         holds = self.is_make_ready and text == self.held and not self.holding.is_set()
         if holds and text == "power on":
-            self.hold(1.0)  # not for ever: a power off may wait for the answer
+            self.hold(self.stopped, 1.8)  # make_ready waits for 2 s
         self.passed_on.append(text)
         answer = super().answer(line)
         if holds and text == "robotmode":
-            self.hold(1.5)  # make_ready waits for 2 s
+            self.hold(self.powered_off, 1.8)
         if text == "power off":
             self.powered_off.set()
         return answer
 
-    def hold(self, timeout):
+    def hold(self, until, timeout):
         self.holding.set()
-        self.powered_off.wait(timeout)
+        until.wait(timeout)
 
 
 class DashboardProxy(socketserver.ThreadingTCPServer):
@@ -254,7 +256,9 @@ def test_make_ready_sends_nothing_after_a_power_off(make_ready_held, command, he
     HoldsMakeReady.arm(held)
     goal = client.send(MakeReady, "make_ready")
     assert HoldsMakeReady.holding.wait(15.0), HoldsMakeReady.passed_on
-    client.send(DashboardCommand, command).succeeded()
+    off = client.send(DashboardCommand, command)  # accepted after it has ended make_ready
+    HoldsMakeReady.stopped.set()
+    off.succeeded()
     assert goal.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
     begin = simulator.state()["timestamp"]
     wait_for(lambda: simulator.state()["timestamp"] > begin + 3.0, 10.0, "the time in which make_ready would send the next command")

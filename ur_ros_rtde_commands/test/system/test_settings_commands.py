@@ -3,8 +3,10 @@
 import math
 
 import pytest
+from action_msgs.msg import GoalStatus
 from arm_state import get_tcp_pose
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from robot_fixtures import make_ready
 from support import wait_for
 
 from ur_ros_rtde_msgs.action import (
@@ -120,6 +122,30 @@ def test_set_output_without_received_packages_fails_with_link_lost(robot, simula
     finally:
         simulator.control("drop_links", which="rtde")
     wait_for(lambda: robot.send(SetDigitalOutput, "set_standard_digital_output", pin=2, state=True).accepted, 10.0, "the reconnection")
+
+
+# Settings of the control program, which would otherwise be blamed on it.
+PROGRAM_SETTINGS = {"set_payload": (SetPayload, {"mass": 1.0}), "set_target_payload": (SetTargetPayload, {"mass": 1.0}),
+                    "set_tcp": (SetTcp, {"pose": Pose(position=Point(z=0.1))})}
+
+
+@pytest.mark.parametrize("name", PROGRAM_SETTINGS)
+def test_a_setting_on_a_silent_link_fails_with_link_lost(robot, simulator, name):
+    """The goal is accepted before the silence is noticed: the control program does not answer, but it has rejected nothing."""
+    action, fields = PROGRAM_SETTINGS[name]
+    robot.send(action, name).succeeded()  # the server is known from now on; mass 0, no offset
+    simulator.control("stall_links", which="rtde")
+    try:
+        goal = robot.send(action, name, **fields)
+        assert goal.accepted, f"the silence was noticed before the goal: {robot.rejection(goal).message}"
+        status, result = goal.wait_for_result(20.0)
+    finally:
+        simulator.control("drop_links", which="rtde")
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.LINK_LOST), result.message
+    cause = result.message.split("; standstill")[0]
+    assert "connection" in cause and "did not set" not in cause and "teach pendant" not in cause, result.message
+    make_ready(robot)
+    robot.send(action, name).succeeded()
 
 
 @pytest.mark.parametrize("name, kind, fields, output, expected", [

@@ -58,9 +58,8 @@ class MotionStopper {
   /// For a holder that goes on afterwards: the same, but the arm stays in its hands.
   Stopping pause(const Permit & holder, const StopOptions & options);
   /// For a holder that is told to end because of `why`: begins to stop the arm. A holder that brakes by
-  /// itself may do so under supervision: it has to begin at once, and be at rest within `braking_timeout`.
-  /// If a stop has taken the arm out of its hands before, of the options only the timeout applies to that
-  /// one.
+  /// itself may do so under supervision: it has to begin at once, and be at rest within `braking_timeout`. If
+  /// a stop of the holder is under way already, only the timeout of the options applies to it.
   void request(const std::shared_ptr<Permit> & holder, const StopOptions & options, const Error & why,
                std::chrono::milliseconds braking_timeout);
   bool is_stopping() const;
@@ -124,7 +123,7 @@ class MotionStopper {
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
   bool foreign_program_plays() const;
-  /// It need not have a watchdog.
+  /// Through the dashboard server alone: the program may have no watchdog.
   Expected<StopMeans> end_foreign_program(const StopOptions & options);
   /// The arm is at rest by `means` once the program has ended.
   Expected<StopMeans> end_program_that_may_go_on(StopMeans means, const StopOptions & options);

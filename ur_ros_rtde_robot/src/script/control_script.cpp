@@ -277,9 +277,12 @@ class Composer {
   {
     std::string result;
     for (const SnippetMode & mode : snippet_modes) {
+      // Each snippet may call the functions of each preamble.
+      const bool in_preamble =
+          std::ranges::any_of(parts_, [&](const Part & part) { return starts(mode, part.preamble); });
       std::string ids;
       for (const Part & part : parts_) {
-        if (starts(mode, part.snippet) || starts(mode, part.preamble)) {
+        if (in_preamble || starts(mode, part.snippet)) {
           ids += fmt::format("{}extension_id == {}", ids.empty() ? "" : " or ", part.id);
         }
       }

@@ -42,7 +42,7 @@ def new_token(address: str) -> str:
         return ""  # start_server() reports it
 
 
-def start_server(address: str, port: int, token: str = "") -> viser.ViserServer:
+def start_server(address: str, port: int, token: str = "", dark: bool = False) -> viser.ViserServer:
     """Returns a running server without content. Raises ViewerError if the address or the port cannot be used."""
     _check_address(address, port)
     with contextlib.redirect_stdout(io.StringIO()), only_own_pages(token):  # viser prints a banner; the viewer prints the address itself
@@ -51,13 +51,13 @@ def start_server(address: str, port: int, token: str = "") -> viser.ViserServer:
         server.stop()
         raise ViewerError(f"{address}:{port} was taken by another program during the start: start again, or choose another --port")
     bound_backlog(server)
-    server.request_share_url = _refuse_to_share
-    server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large", dark_mode=False)
+    server.request_share_url = _do_not_share
+    server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large", dark_mode=dark)
     server.scene.set_up_direction("+z")
     return server
 
 
-def _refuse_to_share(verbose: bool = True) -> None:
+def _do_not_share(verbose: bool = True) -> None:
     """viser can publish a page through a server on the internet. A page that shows or moves a robot must not be published."""
     del verbose
 

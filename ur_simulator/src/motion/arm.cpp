@@ -21,7 +21,9 @@ void Arm::Impl::ramp_speed_scaling(ControllerState & current)
   const double slider =
       std::isfinite(current.speed_slider) ? std::clamp(current.speed_slider, 0.0, 1.0) : 0.0;
   current.target_speed_fraction = slider;
-  const double target = paused ? 0.0 : slider;
+  const bool ends = canceled && current_motion() != nullptr;  // it does not become faster: a stop of a pause
+  const double allowed = paused ? 0.0 : slider;
+  const double target = ends ? std::min(allowed, current.speed_scaling) : allowed;
   const double step = scaling_rate * cycle_time;
   current.speed_scaling += std::clamp(target - current.speed_scaling, -step, step);
   start_scaling = std::min(start_scaling + cycle_time / start_ramp, 1.0);

@@ -114,6 +114,26 @@ TEST(SpeedSliderTest, ChangeDuringAMotionIsGradual)
   EXPECT_NEAR(fixture.state.target.position[0], 2.0, 1e-12);
 }
 
+TEST(PauseTest, TheEndOfAProgramDuringItDoesNotMakeTheArmFaster)
+{
+  ArmFixture fixture;
+  ASSERT_TRUE(fixture.arm.move_joint(near_home(fixture, six(2.0, 0, 0, 0, 0, 0)), {2.0, 1.0}));
+  fixture.run(1.0);
+  fixture.arm.pause();
+  fixture.run(0.4);
+  fixture.arm.cancel_all();
+  fixture.arm.resume();
+  double velocity = fixture.state.target.velocity[0];
+  EXPECT_GT(velocity, 0.1);
+  while (velocity > 0.0) {
+    fixture.run(fixture.dt);
+    ASSERT_LT(fixture.state.target.velocity[0], velocity);
+    velocity = fixture.state.target.velocity[0];
+  }
+  fixture.run(1.0);
+  EXPECT_NEAR(fixture.state.speed_scaling, 1.0, 1e-9) << "for the next program";
+}
+
 TEST(PauseTest, LeavesTheSpeedSlider)
 {
   ArmFixture fixture;

@@ -13,7 +13,7 @@ namespace ur_ros_rtde {
 class StartupRequests {
  public:
   /// The request is under way while the returned object exists, which must end before this one. Null if
-  /// `may_begin` is false; a wait that begins after that has changed sees all requests.
+  /// `may_begin` is false, which has to be so before wait_until_none() is called.
   std::shared_ptr<void> begin(const std::function<bool()> & may_begin);
   /// False if a request is still under way after `timeout`.
   bool wait_until_none(std::chrono::milliseconds timeout);

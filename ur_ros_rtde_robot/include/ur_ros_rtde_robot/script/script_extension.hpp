@@ -13,8 +13,9 @@ struct ScriptRegisters {
 /// URScript code that an extension adds to the control script.
 ///
 /// Robot::run_extension() triggers the snippet. It runs on the robot, in its own thread beside ur_rtde's
-/// commands, reads its parameters from input registers and writes its results to output registers. Snippets
-/// use short forms for registers: `$in19i` and `$in19f` are the values of input registers, `$out19i(x)` and
+/// commands (a blocking one, such as a synchronous moveJ, delays its begin, which fails after 1 s), reads its
+/// parameters from input registers and writes its results to output registers. Snippets use short forms for
+/// registers: `$in19i` and `$in19f` are the values of input registers, `$out19i(x)` and
 /// `$out19f(x)` write output registers (i: integer, f: float). A line that begins with `$5.10 ` is used from
 /// PolyScope 5.10 on and omitted for earlier versions.
 ///

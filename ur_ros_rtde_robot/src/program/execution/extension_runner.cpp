@@ -75,27 +75,29 @@ Status ExtensionRunner::trigger_lost(const Run & run) const
   }
   return failure(
       ErrorCode::link_lost,
-      fmt::format("the IO connection was lost, which ended the extension {}: send the goal again", run.name));
+      fmt::format("the IO connection was lost during the extension {}: send the goal again", run.name));
 }
 
-bool ExtensionRunner::has_lost_connection(Run & run) const
+void ExtensionRunner::update(Run & run, const Sample & sample) const
 {
-  const auto connection = registers_.connection();
-  if (!run.begun && connection.starts != run.io_starts) {
-    return true;
-  }
-  if (connection.is_open) {
+  run.begun = run.begun || sample.extension_acknowledgement() == -run.id;
+  run.controller_begin = run.controller_begin.value_or(sample.controller_time);
+  if (registers_.connection().is_open) {
     run.disconnected_since.reset();
-    return false;
+  } else {
+    run.disconnected_since = run.disconnected_since.value_or(Clock::now());
   }
-  run.disconnected_since = run.disconnected_since.value_or(Clock::now());
-  return Clock::now() - *run.disconnected_since > reconnection_timeout;
+}
+
+bool ExtensionRunner::has_lost_connection(const Run & run) const
+{
+  return (!run.begun && registers_.connection().starts != run.io_starts) ||
+         (run.disconnected_since && Clock::now() - *run.disconnected_since > reconnection_timeout);
 }
 
 /// By both clocks: the controller may be slow, and the samples may be delayed.
-bool ExtensionRunner::is_ignored(Run & run, const Sample & sample)
+bool ExtensionRunner::is_ignored(const Run & run, const Sample & sample)
 {
-  run.controller_begin = run.controller_begin.value_or(sample.controller_time);
   const std::chrono::duration<double> timeout(acknowledgement_timeout);
   return !run.begun && Clock::now() - run.begin > acknowledgement_timeout &&
          sample.controller_time - *run.controller_begin > timeout.count();
@@ -122,7 +124,7 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
   if (acknowledgement == run.id) {
     return Status();
   }
-  run.begun = run.begun || acknowledgement == -run.id;
+  update(run, *sample);
   if (options.stop_reason) {
     if (const auto reason = options.stop_reason()) {
       return Status(tl::unexpected(*reason));
@@ -134,9 +136,10 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
   if (is_ignored(run, *sample)) {
     return failure(
         ErrorCode::timeout,
-        fmt::format("the control program has not begun the extension {} within {:.1f} s of its trigger: send "
-                    "the goal again",
-                    run.name, std::chrono::duration<double>(acknowledgement_timeout).count()));
+        fmt::format(
+            "the control program has not begun the extension {} within {:.1f} s: its trigger was lost, "
+            "or a blocking command occupies the program",
+            run.name, std::chrono::duration<double>(acknowledgement_timeout).count()));
   }
   if (Clock::now() - run.begin > options.timeout) {
     return failure(ErrorCode::timeout, fmt::format("the extension {} has not ended after {:.1f} s", run.name,

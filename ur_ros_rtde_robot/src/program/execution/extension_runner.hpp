@@ -38,10 +38,12 @@ class ExtensionRunner {
   std::optional<Status> result(Run & run, const ExtensionOptions & options) const;
   Status failure_of(Run & run) const;
   Status trigger_lost(const Run & run) const;
-  /// Whether the IO connection has not been opened again in time, or was before the extension began.
-  bool has_lost_connection(Run & run) const;
-  /// Whether the control program has ignored the trigger for too long.
-  static bool is_ignored(Run & run, const Sample & sample);
+  /// Takes the newest acknowledgement and the state of the IO connection.
+  void update(Run & run, const Sample & sample) const;
+  /// The IO connection stays closed, or was opened again before the extension began.
+  bool has_lost_connection(const Run & run) const;
+  /// The control program has not begun the extension in time.
+  static bool is_ignored(const Run & run, const Sample & sample);
 
   const RobotOptions options_;
   const StateReceiver & state_;
