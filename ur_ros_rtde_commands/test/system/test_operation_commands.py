@@ -167,7 +167,7 @@ class RejectsStop(PassesOn):
 
 
 class HoldsMakeReady(PassesOn):
-    """Holds one line of make_ready: the answer to `robotmode` until the arm is powered off, or `power on` until make_ready is being ended."""
+    """Holds one line of make_ready: the answer to `robotmode` until the arm is powered off, or `power on` until make_ready has to end."""
 
     held = ""
     holding = threading.Event()

@@ -105,7 +105,8 @@ class RobotTopics:
             state.wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z))
         io = self._signals.take()
         if io is not None:
-            state.signals = Signals(*(tuple(values) for values in (io.digital_inputs, io.digital_outputs, io.analog_inputs, io.analog_outputs)))
+            values = (io.digital_inputs, io.digital_outputs, io.analog_inputs, io.analog_outputs)
+            state.signals = Signals(*map(tuple, values))
         state.age = time.monotonic() - self._last_received
 
     def _learn_names(self, message: JointState) -> None:

@@ -18,6 +18,7 @@ PROFILES: Dict[str, Tuple[str, ...]] = {
 SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0, "urcap": 2.0}  # s, after which a silent connection is found to be dead
 HELD = 0.4  # of all cases
 WAITING = 0.4  # of the cases in which a goal may wait for the arm
+ARRIVAL = 0.02  # s, until the driver has received a goal
 LOCAL = 0.12  # of the cases that are possible in local control
 LONGEST_HOLD = 0.4  # s
 # The thread of a goal is late while its program ends and the next one starts. The seeds of these cases are -1, -2, and so on.
@@ -94,6 +95,8 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     hold = _hold(random)
     may_wait = profile == "preempt" and event.ends_waiting and kind.name not in HAND_GUIDED
     waiting = random.uniform(0.0, 0.4) if random.random() < WAITING and may_wait else None
+    if hold is not None and waiting is not None and hold.begin < ARRIVAL - waiting:
+        waiting = None  # the driver could receive it after the event
     local = random.random() < LOCAL and event.in_local_control and waiting is None
     case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold, waiting, local)
     if seed < 0:
