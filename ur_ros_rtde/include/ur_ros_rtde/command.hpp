@@ -57,7 +57,8 @@ class Command : public CommandPlugin {
   virtual void check(const Goal &, Check &) const {}
   /// Executes the goal in a thread of its own.
   virtual Outcome run(const Goal & goal, Run & run) = 0;
-  /// How the arm is stopped if it moves when run() ends or has to end. Asked when the goal is accepted.
+  /// How the arm is stopped if it moves when run() ends or has to end; during a call of another command
+  /// (Run::call), as that one says. Asked when the goal is accepted, or called.
   virtual StopOptions stop_options(const Goal &) const { return {}; }
   /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked
   /// when the command is loaded, for goals that it never gets.

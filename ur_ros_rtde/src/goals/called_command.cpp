@@ -31,6 +31,22 @@ Status all_succeed(Check & check, Robot & robot)
   return {};
 }
 
+/// If the goal has to end during a call, the arm is stopped as the called command asks.
+class StopOptionsOfCall {
+ public:
+  StopOptionsOfCall(const RunContext & context, const StopOptions & options)
+      : context_(context), before_(context.exchange_stop_options(options))
+  {
+  }
+  ~StopOptionsOfCall() { context_.exchange_stop_options(before_); }
+  StopOptionsOfCall(const StopOptionsOfCall &) = delete;
+  StopOptionsOfCall & operator=(const StopOptionsOfCall &) = delete;
+
+ private:
+  const RunContext & context_;
+  const StopOptions before_;
+};
+
 }  // namespace
 
 Error not_callable(const std::string & command, bool exists)
@@ -73,11 +89,15 @@ Outcome Run::execute(const CalledCommand & called)
 {
   const CommandDescription & wanted = called.description;
   const Activities active_before = robot().activities() & outlasting_modes;
+  std::optional<StopOptionsOfCall> stop_options;
   const Outcome outcome = guarded(*context_.stop_request, [&]() -> Outcome {
     Check check(&context_.robot, [&] { return may_execute(called); });
     called.check(check);
     if (Status possible = all_succeed(check, context_.robot); !possible) {
       return possible;
+    }
+    if (wanted.needs_motion()) {
+      stop_options.emplace(context_, called.stop_options());
     }
     Lease io;
     if (wanted.traits.resource == Resource::io && context_.command->traits.resource != Resource::io) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ur_ros_rtde/detail/guarded.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
@@ -158,13 +159,13 @@ void CommandGoal::release()
 
 void CommandGoal::on_stop(const Error & why)
 {
+  const std::lock_guard lock(lease_mutex_);
   StopOptions options = stop_options_;
   milliseconds braking = braking_timeout;
   if (why.code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
     braking = shutdown_stop_timeout;
   }
-  const std::lock_guard lock(lease_mutex_);
   robot().request_stop(lease_, options, why, braking);
   if (command_->traits.resource == Resource::mode && leaves_active(why)) {
     robot().begin_stop(options, why);  // a mode cannot be ended while another goal moves the arm
@@ -247,6 +248,10 @@ RunContext CommandGoal::make_context()
   context.stopping = stopping_;
   context.preempted_goal = preempted_goal_;
   context.stops_before = stops_before_;
+  context.exchange_stop_options = [this](const StopOptions & options) {
+    const std::lock_guard lock(lease_mutex_);
+    return std::exchange(stop_options_, options);
+  };
   context.log_warning = [this](const std::string & text) { warn(text); };
   context.publish_feedback = [this](const void * feedback) { handle().publish_feedback(feedback); };
   return context;

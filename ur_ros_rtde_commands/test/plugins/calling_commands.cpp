@@ -11,13 +11,8 @@ using ur_ros_rtde_msgs::action::MoveJRelative;
 using ur_ros_rtde_msgs::action::SendScript;
 using ur_ros_rtde_msgs::action::SpeedJ;
 
-/// Calls speed_j, for the stop property test.
+/// Calls speed_j, for the stop property test. Is stopped as that.
 class CallsSpeedJ : public Command<SpeedJ> {
-  StopOptions stop_options(const Goal & goal) const override
-  {
-    return {.joint_deceleration = goal.deceleration};
-  }
-
   Outcome run(const Goal & goal, Run & run) override { return run.call<SpeedJ>("speed_j", goal); }
 };
 

@@ -4,6 +4,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from plugin_prefix import environment_of_test_commands
 from support import start_node, wait_for
+from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import SendScript, SpeedJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -91,3 +92,13 @@ def test_cancel_ends_the_called_command(robot, simulator):
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and result.error_code == ErrorCode.CANCELED, result.message
     assert simulator.is_at_rest()
+
+
+def test_cancel_stops_the_arm_as_the_called_command_asks(robot, simulator):
+    """The one that calls it does not say how."""
+    goal = turning(robot, "calls_speed_j", time=20.0, deceleration=6.0)
+    wait_for(lambda: max(map(abs, simulator.state()["target"]["velocity"])) > 0.49, 10.0, "the speed")
+    recorder = TargetRecorder(simulator)
+    goal.cancel()
+    recorder.record_until_finished(goal)
+    assert recorder.max_deceleration() == pytest.approx(6.0, rel=0.1)

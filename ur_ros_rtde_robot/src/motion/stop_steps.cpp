@@ -110,7 +110,7 @@ Expected<StopMeans> MotionStopper::end_program_that_may_go_on(StopMeans means, c
 Expected<StopMeans> MotionStopper::end_foreign_program(const StopOptions & options)
 {
   if (const Status ended = stop_by_dashboard(options); !ended) {
-    return failure(ended.error().code,
+    return failure(ErrorCode::timeout,
                    fmt::format("a program that is not of this driver runs on the robot and may move the arm: "
                                "stop it on the pendant ({})",
                                ended.error().message));

@@ -85,7 +85,6 @@ class CommandGoal : public Goal {
   bool leaves_active(const Outcome & outcome) const;
 
   const std::shared_ptr<const CommandDescription> command_;
-  StopOptions stop_options_;
   // When the goal was received:
   std::uint32_t stops_before_ = 0;  ///< CommandHost::stops()
   Generation received_;
@@ -93,6 +92,7 @@ class CommandGoal : public Goal {
   std::string preempted_goal_;
   mutable std::mutex lease_mutex_;  ///< guards what follows
   Lease lease_;
+  StopOptions stop_options_;  ///< of the command that runs: this one, or one that it calls
   /// Modes that previous goals have left active. Empty: the command has not begun.
   std::optional<Activities> active_before_;
 };

@@ -26,6 +26,10 @@ struct RunContext {
   /// Of a stop: the goal that was executed, "/move_j, goal 3f0c12ab". Empty: none.
   std::string preempted_goal{};
   std::uint32_t stops_before = 0;  ///< CommandHost::stops() when the goal was received
+  /// How the arm is stopped from now on if the goal has to end. Returns how it was until now.
+  std::function<StopOptions(const StopOptions &)> exchange_stop_options = [](const StopOptions & options) {
+    return options;
+  };
   std::function<void(const std::string &)> log_warning = [](const std::string &) {};
   /// Publishes an A::Feedback of the action.
   std::function<void(const void *)> publish_feedback = [](const void *) {};
