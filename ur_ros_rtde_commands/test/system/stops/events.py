@@ -28,6 +28,7 @@ class Event:
     ends_driver: bool = False
     profile: str = ""  # the only one in which it occurs
     has_result: bool = True
+    slows_time: bool = False  # the speed scaling falls: an arm that accelerates still does so at first
     is_silent: bool = False  # is noticed after the silence_limit
     ends_waiting: bool = True  # also ends a goal that waits for the arm
     in_local_control: bool = True  # possible there
@@ -163,7 +164,7 @@ EVENTS = (
     Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
     Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
     Event("program stopped", _press(_stop_button), 5.0, BEGIN_LIMIT),
-    Event("program paused", _press(_pause_button), 5.0, BEGIN_LIMIT, recover=_press_play),
+    Event("program paused", _press(_pause_button), 5.0, BEGIN_LIMIT, recover=_press_play, slows_time=True),
     Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT, in_local_control=False),
     Event("control link dropped", _control("drop_links", which="rtde", clients="control"), 4.0,
           ends_waiting=False),  # the driver ends the program, and starts it for the goal that waits

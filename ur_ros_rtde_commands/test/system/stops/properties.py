@@ -104,7 +104,7 @@ class Checks:
         limit = self._case.event.begin_limit
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
-        if self._only_the_watchdog_ends_it():
+        if self._only_the_watchdog_ends_it() or self._case.event.slows_time and self._change_of_speed(trace, stopping.event) > 0.0:
             return
         latency = stopping.latency
         if self._case.kind.space == PATH and self._lane.second_request is not None:  # it may brake along its path until then
@@ -176,8 +176,11 @@ class Checks:
 
     def _was_decelerating(self, trace: motion.Trace, event: int) -> bool:
         """The goal has come to its end by itself."""
-        speeds = [speed[self._column()] for speed in trace.speeds[max(0, event - 2):event + 1]]
-        return len(speeds) < 2 or speeds[-1] < speeds[0] - motion.DECREASE
+        return event == 0 or self._change_of_speed(trace, event) < -motion.DECREASE
+
+    def _change_of_speed(self, trace: motion.Trace, event: int) -> float:
+        """In the two cycles before the event."""
+        return trace.speeds[event][self._column()] - trace.speeds[max(0, event - 2)][self._column()]
 
     # --- Reports ---
 
