@@ -1,5 +1,8 @@
 """./ur fuzz: its targets, their corpora and the command line of libFuzzer."""
 
+import os
+import subprocess
+
 import pytest
 from ur_tools import console, fuzz, layout
 
@@ -34,3 +37,12 @@ def test_new_inputs_are_kept_apart_from_the_seeds(tmp_path, monkeypatch):
         found = tmp_path / "kilted" / "fuzz" / "corpus" / "urscript"
         assert command[-2:] == [str(found), str(layout.ROOT / "ur_simulator" / "fuzz" / "corpus" / "urscript")]
         assert found.is_dir()
+
+
+@pytest.mark.parametrize("thorough, mutations", [({}, 100), ({"UR_TEST_THOROUGH": "1"}, 600)])
+def test_a_replay_is_longer_in_a_thorough_run(tmp_path, thorough, mutations):
+    program = layout.Layout.of_environment().build / "ur_simulator" / "test" / "replay_modbus"
+    env = {name: value for name, value in os.environ.items() if name != "UR_TEST_THOROUGH"}
+    done = subprocess.run([str(program), str(layout.ROOT / "ur_simulator" / "fuzz" / "corpus" / "modbus"), "600"],
+                          env={**env, **thorough}, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and f", {mutations} mutations" in done.stdout, done.stdout + done.stderr

@@ -71,6 +71,15 @@ def test_a_background_test_has_a_low_priority(tmp_path, monkeypatch):
     assert f"niceness {min(19, os.nice(0) + runner.BACKGROUND_NICENESS)}" in output
 
 
+@pytest.mark.parametrize("thorough", [False, True])
+def test_the_tests_know_whether_the_run_is_thorough(tmp_path, monkeypatch, thorough):
+    monkeypatch.delenv("UR_TEST_THOROUGH", raising=False)
+    monkeypatch.setattr(runner, "ROOT", tmp_path)
+    test = runner.Test("a: test", ["sh", "-c", "echo thorough: $UR_TEST_THOROUGH; exit 1"], tmp_path, 20.0)
+    with runner.Runner(Layout.of_environment(), tmp_path, thorough=thorough) as started:
+        assert ("thorough: 1" in started.run(test).output) is thorough
+
+
 def test_the_durations_of_an_interrupted_run_are_kept(tmp_path, monkeypatch):
     class InterruptedRunner:
         def run(self, test):

@@ -76,7 +76,7 @@ def command_test(options: argparse.Namespace) -> int:
     if options.names and options.changed:
         raise console.Failure("./ur test takes names or --changed, not both")
     return testing.run(testing.Options(_layout(options), options.names, options.changed or bool(options.base), options.base,
-                                       options.jobs, options.timeout, options.repeat))
+                                       options.jobs, options.timeout, options.repeat, options.thorough))
 
 
 def command_sim(options: argparse.Namespace) -> int:
@@ -264,6 +264,8 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
     test.add_argument("--timeout", type=float, default=0.0, metavar="S",
                       help="time limit of one test in seconds (default: the limit that its package sets, else 120)")
     test.add_argument("--repeat", type=int, default=1, metavar="N", help="run each test N times (default: 1)")
+    test.add_argument("--thorough", action="store_true",
+                      help="fuzz replays of 30 s of processor time instead of 5 s, as continuous integration runs them")
 
     build = add("build", command_build, "set up the environment and build what changed")
     _add_build_options(build)

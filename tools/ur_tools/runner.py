@@ -159,7 +159,7 @@ def _lower_priority(pid: int) -> None:
 class Runner:
     """Runs tests of one build. `run` may be called from several threads."""
 
-    def __init__(self, layout: Layout, folder: pathlib.Path, limit: float = 0.0):
+    def __init__(self, layout: Layout, folder: pathlib.Path, limit: float = 0.0, thorough: bool = False):
         """`folder` receives the logs. `limit` replaces the limits of the tests, s; 0: none."""
         self._folder, self._limit = folder, limit
         self._env = run_environment(layout)
@@ -170,6 +170,8 @@ class Runner:
             self._env["UR_TEST_CELLS"] = "1"
             self._env["UR_TEST_REAL_TIME_FACTOR"] = str(SANITIZED_REAL_TIME_FACTOR)
         self._env["UR_TEST_PATIENCE"] = str(self._patience)
+        if thorough:
+            self._env["UR_TEST_THOROUGH"] = "1"
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env.pop("PYTHONDONTWRITEBYTECODE", None)
         self._env["PYTHONPATH"] = os.pathsep.join([self._env["PYTHONPATH"], str(TOOLS)])  # for host_stalls.py

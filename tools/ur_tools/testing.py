@@ -40,6 +40,7 @@ class Options:
     jobs: int = 0
     timeout: float = 0.0
     repeat: int = 1
+    thorough: bool = False
 
 
 # --- Collecting -------------------------------------------------------------------------------------------------------
@@ -218,7 +219,7 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
                 console.line(f"FAILED  {check.name}\n{check.text}")
         console.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
         folder = isolation.fresh_folder(options.layout.base / "test")
-        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout) as runner:
+        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout, options.thorough) as runner:
             results = _run_all(options, runner, tests)
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
     if not (options.names or options.changed):

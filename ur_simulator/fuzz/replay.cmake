@@ -1,5 +1,6 @@
 # Adds the test fuzz.<name>: the target fuzz/fuzz_<name>.cpp of this package on its corpus and on mutations of it, with
-# any compiler. libFuzzer itself is used by ./ur fuzz. The mutations should take about 30 s of processor time.
+# any compiler. libFuzzer itself is used by ./ur fuzz. All mutations (UR_TEST_THOROUGH) should take about 30 s of
+# processor time.
 function(add_fuzz_replay name mutations)
   set(fuzz ${PROJECT_SOURCE_DIR}/fuzz)
   add_executable(replay_${name} ${fuzz}/fuzz_${name}.cpp ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/replay.cpp)

@@ -14,7 +14,7 @@
 // of them, which are the same in each run.
 //
 // usage: replay_<target> <corpus folder> <number of mutations>
-// An input that crashes the target is written to crash-<target>.
+// Only a sixth of the mutations is run unless UR_TEST_THOROUGH is set (./ur test --thorough). An input that crashes the target is written to crash-<target>.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size);
 
@@ -129,7 +129,9 @@ int main(int argc, char ** argv)
     run(input);
   }
   Mutator mutator(corpus);
-  const long mutations = std::strtol(argv[2], nullptr, 10);
+  constexpr long share = 6;
+  const bool is_thorough = std::getenv("UR_TEST_THOROUGH") != nullptr;
+  const long mutations = std::strtol(argv[2], nullptr, 10) / (is_thorough ? 1 : share);
   for (long i = 0; i < mutations; ++i) {
     run(mutator.next());
   }
