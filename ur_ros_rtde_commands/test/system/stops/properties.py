@@ -21,6 +21,7 @@ from .motion import CYCLE
 RESULT_LIMIT = 1.0 * TIMEOUT_FACTOR  # s of the host, after the standstill
 HELD_REST_LIMIT = 1.2  # s of the robot, after the end of a hold: the driver may have lost the connection, or the watchdog has to act
 LOCAL_LIMIT = 4.0  # s, more in local control, where the driver tries to stop the program before it uses the watchdog
+LOCAL_RESULT_LIMIT = 5.5  # s, more in local control: a script's result waits for the control program, which cannot be started there
 MODE_REST_LIMIT = 0.8  # s, more for what the driver does not decelerate along a path: the end of a mode, a braking arm
 TOLERANCE = 0.12  # of a deceleration
 LONG_STALL = 0.01  # s
@@ -88,7 +89,7 @@ class Checks:
             return
         begin = max(self._lane.when, trace.published[min(stopping.rest, trace.length() - 1)], self.hold["end"] if self.hold else 0)
         self._report.result = round(1e-9 * (self.result_at - begin), 4)
-        limit = RESULT_LIMIT + self._time_to_notice() + (LOCAL_LIMIT if self._case.local else 0.0)
+        limit = RESULT_LIMIT + self._time_to_notice() + (LOCAL_RESULT_LIMIT if self._case.local else 0.0)
         if self._report.result > limit:
             self._limit_exceeded(f"the result comes {self._report.result:.3f} s after the standstill", self._report.result - limit,
                                  self._stall_until_rest)
