@@ -33,9 +33,9 @@ auto age(const std_msgs::msg::Header & header)
 }
 }  // namespace
 
-DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse)
+DuplicateCheck::DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> reject)
     : node_(node),
-      refuse_(std::move(refuse)),
+      reject_(std::move(reject)),
       own_(this_process()),
       publisher_(node.create_publisher<Instance>("~/_instance", rcl_cxx::QoS::transient_local())),
       subscription_(
@@ -49,7 +49,7 @@ std::optional<std::string> DuplicateCheck::find_older()
 {
   for (Instance other; subscription_->take(other);) {
     if (is_older(other)) {
-      return refusal(other);
+      return rejection(other);
     }
   }
   return std::nullopt;
@@ -63,7 +63,7 @@ void DuplicateCheck::on_instance(const Instance & other)
   if (std::chrono::steady_clock::now() - begin_ > start_phase) {
     RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", conflict_with(other), remedy);
   } else if (is_older(other)) {
-    refuse_(refusal(other));
+    reject_(rejection(other));
   }
 }
 
@@ -78,7 +78,7 @@ std::string DuplicateCheck::conflict_with(const Instance & other) const
                      node_.get_fully_qualified_name(), other.frame_id);
 }
 
-std::string DuplicateCheck::refusal(const Instance & other) const
+std::string DuplicateCheck::rejection(const Instance & other) const
 {
   return fmt::format("{}, so this process exits: {}", conflict_with(other), remedy);
 }

@@ -14,10 +14,10 @@ namespace ur_ros_rtde {
 /// local topic `~/_instance`. A killed process stops publishing, even while its node is still listed.
 class DuplicateCheck {
  public:
-  /// Calls `refuse` with the reason if an older process is found shortly after the start; later, an error is
+  /// Calls `reject` with the reason if an older process is found shortly after the start; later, an error is
   /// logged. Runs in the executor's thread.
-  DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> refuse);
-  /// For use before the node has an executor: the reason to refuse, if an older process has been found.
+  DuplicateCheck(rcl_cxx::Node & node, std::function<void(const std::string & why)> reject);
+  /// For use before the node has an executor: the reason to reject, if an older process has been found.
   std::optional<std::string> find_older();
 
  private:
@@ -25,10 +25,10 @@ class DuplicateCheck {
   void on_instance(const Instance & other);
   bool is_older(const Instance & other) const;
   std::string conflict_with(const Instance & other) const;
-  std::string refusal(const Instance & other) const;
+  std::string rejection(const Instance & other) const;
 
   rcl_cxx::Node & node_;
-  const std::function<void(const std::string &)> refuse_;
+  const std::function<void(const std::string &)> reject_;
   const Instance own_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   rcl_cxx::Publisher<Instance>::SharedPtr publisher_;

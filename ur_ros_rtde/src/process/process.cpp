@@ -49,21 +49,21 @@ void close_servers(const Servers & servers)
 
 using DuplicateChecks = std::vector<std::unique_ptr<DuplicateCheck>>;
 
-void refuse_start(const rcl_cxx::Node & node, const std::string & why, std::atomic<bool> & refused)
+void reject_start(const rcl_cxx::Node & node, const std::string & why, std::atomic<bool> & rejected)
 {
-  if (!refused.exchange(true)) {
+  if (!rejected.exchange(true)) {
     RCL_CXX_FATAL(node.get_logger(), "{}", why);
     node.get_context()->shutdown(why);
   }
 }
 
-DuplicateChecks start_duplicate_checks(const Servers & servers, std::atomic<bool> & refused)
+DuplicateChecks start_duplicate_checks(const Servers & servers, std::atomic<bool> & rejected)
 {
   DuplicateChecks checks;
   for (const auto & server : servers) {
     rcl_cxx::Node & node = server->node();
     checks.push_back(std::make_unique<DuplicateCheck>(
-        node, [&node, &refused](const std::string & why) { refuse_start(node, why, refused); }));
+        node, [&node, &rejected](const std::string & why) { reject_start(node, why, rejected); }));
   }
   return checks;
 }
@@ -150,12 +150,12 @@ std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & conte
   }
 }
 
-void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & refused)
+void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & rejected)
 {
   const auto begin = Clock::now();
   std::vector<std::unique_ptr<HostNameLock>> names;
   const bool taken = reserve_names(servers, names);
-  const auto checks = start_duplicate_checks(servers, refused);
+  const auto checks = start_duplicate_checks(servers, rejected);
   for (const auto & server : servers) {
     server->load_plugins();
   }
@@ -163,7 +163,7 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
   const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
   const auto start = begin + (taken ? Clock::duration(local_discovery_time) : discovery_time);
   if (const auto why = run_servers(context, servers, checks, start)) {
-    refuse_start(servers.front()->node(), *why, refused);
+    reject_start(servers.front()->node(), *why, rejected);
   }
   context->remove_shutdown_callback(callback);
 }
@@ -173,7 +173,7 @@ int run_process(int argc, char ** argv, const MakeServers & make)
 {
   constexpr int wrong_arguments = 2;
   rcl_cxx::Context::SharedPtr context;
-  std::atomic<bool> refused{false};
+  std::atomic<bool> rejected{false};
   try {
     use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
@@ -184,15 +184,15 @@ int run_process(int argc, char ** argv, const MakeServers & make)
     }
     Servers servers = make(context);
     report_fastdds_profile(servers.front()->node().get_logger());
-    serve(context, servers, refused);
+    serve(context, servers, rejected);
     while (!servers.empty()) {
       servers.pop_back();
     }
-    return refused ? wrong_arguments : 0;
+    return rejected ? wrong_arguments : 0;
   } catch (const std::exception & error) {
     if (context && !context->ok()) {
       // The process was stopped during its start, so the start failed.
-      return refused ? wrong_arguments : 0;
+      return rejected ? wrong_arguments : 0;
     }
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return dynamic_cast<const rcl_cxx::Error *>(&error) != nullptr ? wrong_arguments : 1;
