@@ -14,7 +14,8 @@
 // of them, which are the same in each run.
 //
 // usage: replay_<target> <corpus folder> <number of mutations>
-// Only a sixth of the mutations is run unless UR_TEST_THOROUGH is set (./ur test --thorough). An input that crashes the target is written to crash-<target>.
+// Only a sixth of the mutations is run unless UR_TEST_THOROUGH is set (./ur test --thorough). An input that
+// crashes the target is written to crash-<target>.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t * data, std::size_t size);
 

@@ -98,6 +98,7 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     if hold is not None and waiting is not None and hold.begin < ARRIVAL - waiting:
         waiting = None  # the driver could receive it after the event
     local = random.random() < LOCAL and event.in_local_control and waiting is None
+    local = local and (waits or not kind.runs_script)  # the controller takes no script in local control
     case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold, waiting, local)
     if seed < 0:
         case = _with_late_thread(case, kinds, *LATE_THREADS[-seed - 1])
