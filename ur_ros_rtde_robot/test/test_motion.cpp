@@ -93,6 +93,27 @@ struct ArrivalTest : testing::Test {
   }
 };
 
+TEST(MotionTrackerTest, CountsAProgramThatIsFoundPausedAsEnded)
+{
+  MotionTracker tracker;
+  Sample sample{};
+  const auto programs_after = [&](RuntimeState state) {
+    sample.runtime_state = state;
+    ++sample.sequence;
+    tracker.add(sample);
+    return tracker.view().program;
+  };
+  const auto begin = programs_after(RuntimeState::stopped);
+  EXPECT_EQ(programs_after(RuntimeState::pausing), begin + 1) << "it was started and paused in between";
+  EXPECT_EQ(programs_after(RuntimeState::paused), begin + 1);
+  EXPECT_EQ(programs_after(RuntimeState::resuming), begin + 1);
+  EXPECT_EQ(programs_after(RuntimeState::playing), begin + 1);
+  EXPECT_EQ(programs_after(RuntimeState::pausing), begin + 2);
+  EXPECT_EQ(programs_after(RuntimeState::paused), begin + 2);
+  EXPECT_EQ(programs_after(RuntimeState::stopped), begin + 2);
+  EXPECT_EQ(programs_after(RuntimeState::playing), begin + 2);
+}
+
 TEST_F(ArrivalTest, IsProvenByThePackageInWhichTheOperationEnds)
 {
   EXPECT_TRUE(end_move());

@@ -18,8 +18,8 @@ class MotionTracker {
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
-    /// Incremented when the robot program ends or the connection is re-established, either of which ends all
-    /// motions.
+    /// Incremented when the robot program ends, also if it is found paused without having been seen to run,
+    /// or the connection is re-established, each of which ends all motions.
     std::uint32_t program = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
@@ -47,7 +47,9 @@ class MotionTracker {
     if (sample.sequence <= view_.sequence) {
       return;
     }
-    const bool ended = (view_.program_running && !sample.is_program_running()) || sample.link != view_.link;
+    const bool found_paused = is_paused(sample) && !view_.program_running && !was_paused_;
+    const bool ended =
+        (view_.program_running && !sample.is_program_running()) || found_paused || sample.link != view_.link;
     const bool same_word = sample.async == view_.async;
     standstill_.add(sample);
     arrival_.add(sample, !ended && operation_ends(sample));
@@ -58,6 +60,7 @@ class MotionTracker {
     const double gap = view_.sequence == 0 ? 0.0 : seconds_between(received_, sample.received);
     const bool keeps_gap = gap <= view_.gap && sample.controller_time - view_.gap_time < gap_memory;
     received_ = sample.received;
+    was_paused_ = is_paused(sample);
     view_ = {.at_rest = standstill_.at_rest() || arrival_.arrived(),
              .async = sample.async,
              .program_running = sample.is_program_running(),
@@ -82,6 +85,12 @@ class MotionTracker {
   }
 
  private:
+  /// Until it has gone on.
+  static bool is_paused(const Sample & sample)
+  {
+    return sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused ||
+           sample.runtime_state == RuntimeState::resuming;
+  }
   static double seconds_between(std::chrono::steady_clock::time_point a,
                                 std::chrono::steady_clock::time_point b)
   {
@@ -100,6 +109,7 @@ class MotionTracker {
   StandstillDetector standstill_;
   ArrivalDetector arrival_;
   View view_;
+  bool was_paused_ = false;
   std::chrono::steady_clock::time_point received_{};  ///< of the newest sample
   Error end_cause_;
 };

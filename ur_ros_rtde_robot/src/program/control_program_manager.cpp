@@ -283,8 +283,9 @@ ControlProgramManager::Outcome ControlProgramManager::examine_once()
 
 tl::expected<Sample, RobotStatus> ControlProgramManager::follow_link()
 {
-  const auto link = receiver_.link();
   auto sample = receiver_.latest();
+  const auto link =
+      receiver_.link();  // after the sample, which is not of a connection that follows a lost one
   // A new connection may not have delivered its first package: then the newest sample is of the lost one.
   if (link.connected && sample && sample->link == lost_link_ &&
       !receiver_.wait_for_next(*sample, first_package_timeout, stop_.get_token())) {
