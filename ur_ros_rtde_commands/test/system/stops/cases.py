@@ -21,6 +21,7 @@ WAITING = 0.4  # of the cases in which a goal may wait for the arm
 ARRIVAL = 0.02  # s, until the driver has received a goal
 LOCAL = 0.12  # of the cases that are possible in local control
 LONGEST_HOLD = 0.4  # s
+PRESSED = ("program stopped", "program paused")  # on the pendant
 # The thread of a goal is late while its program ends and the next one starts. The seeds of these cases are -1, -2, and so on.
 LATE_THREADS = [(kind, event) for kind in ("execute_trajectory", "move_j", "servo_j", "speed_j")
                 for event in ("program stopped", "program replaced")]
@@ -99,6 +100,8 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
         waiting = None  # the driver could receive it after the event
     local = random.random() < LOCAL and event.in_local_control and waiting is None
     local = local and (waits or not kind.runs_script)  # the controller takes no script in local control
+    if event.name in PRESSED and hold is not None and hold.begin < 0.0 and profile == "fast":
+        local = False  # the watchdog may have ended the program before, and the driver could not start it again
     case = Case(seed, profile, kind, event, waits, delay, second_delay, stop, hold, waiting, local)
     if seed < 0:
         case = _with_late_thread(case, kinds, *LATE_THREADS[-seed - 1])
