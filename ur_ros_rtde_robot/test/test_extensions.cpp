@@ -149,20 +149,30 @@ TEST_F(ExtensionsTest, AreStoppedWhileAnotherThreadHoldsTheIoInterface)
   EXPECT_LT(duration, 1.0);
 }
 
+/// An extension that turns the arm and loses the connection of its trigger.
+struct LostConnectionTest : ExtensionsTest {
+  double begin = 0.0;  ///< of the loss, controller time in s
+
+  Status run_and_lose(const std::function<void()> & before_loss)
+  {
+    start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
+    ExtensionOptions options;
+    options.stop_reason = [&]() -> std::optional<Error> {
+      if (begin == 0.0 && robot->latest()->actual_qd[0] > 0.28) {
+        before_loss();
+        controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
+        begin = robot->latest()->controller_time;
+      }
+      return std::nullopt;
+    };
+    return run_extension("turn", options);
+  }
+};
+
 /// The controller keeps the trigger of a lost connection; the next connection clears it.
-TEST_F(ExtensionsTest, FailWhenTheirConnectionIsLost)
+TEST_F(LostConnectionTest, EndsTheExtension)
 {
-  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
-  double begin = 0.0;
-  ExtensionOptions options;
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (begin == 0.0 && robot->latest()->actual_qd[0] > 0.28) {
-      controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
-      begin = robot->latest()->controller_time;
-    }
-    return std::nullopt;
-  };
-  const Status ended = run_extension("turn", options);
+  const Status ended = run_and_lose([] {});
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.error().code, ErrorCode::link_lost) << ended.error().message;
   EXPECT_LT(robot->latest()->controller_time - begin, 1.0);
@@ -170,20 +180,10 @@ TEST_F(ExtensionsTest, FailWhenTheirConnectionIsLost)
 }
 
 /// Without a connection, nothing clears the trigger, and the extension goes on.
-TEST_F(ExtensionsTest, AreStoppedIfTheirConnectionStaysLost)
+TEST_F(LostConnectionTest, EndsTheExtensionEvenIfItStaysLost)
 {
-  start_with({extension("turn", "speedj([0.3, 0, 0, 0, 0, 0], 2.0, 60.0)\n")});
-  double begin = 0.0;
-  ExtensionOptions options;
-  options.stop_reason = [&]() -> std::optional<Error> {
-    if (begin == 0.0 && robot->latest()->actual_qd[0] > 0.28) {
-      controller.control({{"command", "refuse_connections"}, {"which", "rtde"}});
-      controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "io"}});
-      begin = robot->latest()->controller_time;
-    }
-    return std::nullopt;
-  };
-  const Status ended = run_extension("turn", options);
+  const Status ended =
+      run_and_lose([this] { controller.control({{"command", "refuse_connections"}, {"which", "rtde"}}); });
   const double duration = robot->latest()->controller_time - begin;
   controller.control({{"command", "accept_connections"}, {"which", "rtde"}});
   ASSERT_FALSE(ended);

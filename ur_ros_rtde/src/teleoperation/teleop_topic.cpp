@@ -86,10 +86,9 @@ void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::Messa
   {
     const std::lock_guard lock(mutex_);
     Message next = following(std::move(target), info, sample);
-    next.logged = next.session == newest_.session && next.hindrance == newest_.hindrance && newest_.logged;
-    if (!next.logged && is_known(next)) {
-      hindrance = next.hindrance;
-      next.logged = true;
+    if (!next.session.is_logged && is_known(next)) {
+      hindrance = next.session.hindrance;
+      next.session.is_logged = true;
     }
     newest_ = std::move(next);
   }
@@ -105,22 +104,33 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   next.number = newest_.number + 1;
   next.info = info;
   const double interval = seconds(next.arrived - newest_.arrived);
-  const bool was_stopped = host_.stops() != newest_.stops;
+  const Session & before = newest_.session;
+  const bool was_stopped = host_.stops() != before.stops;
   const bool paused = newest_.number == 0 || has_paused(newest_.info, info, options_.timeout);
   const bool first = newest_.number == 0 ||
-                     (interval > options_.timeout && (paused || (!was_stopped && !newest_.needs_pause)));
-  next.session = newest_.session + (first ? 1 : 0);
-  next.follows_pause = first ? paused : newest_.follows_pause;
-  next.needs_pause = !first && newest_.needs_pause;
+                     (interval > options_.timeout && (paused || (!was_stopped && !before.needs_pause)));
   next.period = newest_.period;
   next.period.next(interval, options_.timeout);
-  const StreamTarget * const before = newest_.target ? &*newest_.target : nullptr;
-  next.moves = target && sample ? follower_->moves(*target, before, *sample) : newest_.moves;
+  const StreamTarget * const last = newest_.target ? &*newest_.target : nullptr;
+  next.moves = target && sample ? follower_->moves(*target, last, *sample) : newest_.moves;
   next.target = std::move(target);
-  next.first = first ? info : newest_.first;
-  next.silent_since = !first ? newest_.silent_since : newest_.number == 0 ? created_ : newest_.arrived;
-  next.hindrance = first ? hindrance_of_first(next, was_stopped) : hindrance_of_following(next, was_stopped);
-  next.stops = first || next.may_start() != newest_.may_start() ? host_.stops() : newest_.stops;
+  if (first) {
+    next.session = {.number = before.number + 1,
+                    .stops = host_.stops(),
+                    .first = info,
+                    .silent_since = newest_.number == 0 ? created_ : newest_.arrived,
+                    .follows_pause = paused};
+    next.session.hindrance = hindrance_of_first(next, was_stopped);
+    return next;
+  }
+  next.session = before;
+  next.session.hindrance = hindrance_of_following(next, was_stopped);
+  if (next.session.hindrance != before.hindrance) {
+    next.session.is_logged = false;
+  }
+  if (next.session.may_start() && !before.may_start()) {
+    next.session.stops = host_.stops();
+  }
   return next;
 }
 
@@ -133,30 +143,30 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_first(const Message & next, boo
     return newest_.moves || was_stopped ? Hindrance::gap : Hindrance::none;
   }
   // A publisher that counts its messages shows its age later.
-  const bool was_ended = newest_.number > 0 && (was_stopped || newest_.needs_pause);
-  const bool is_soon = next.arrived - next.silent_since < discovery_time;
+  const bool was_ended = newest_.number > 0 && (was_stopped || newest_.session.needs_pause);
+  const bool is_soon = next.arrived - next.session.silent_since < discovery_time;
   const bool may_be_old = was_ended ? next.info.number || is_soon : newest_.number == 0 && is_soon;
   return may_be_old && next.info.number != 1u ? Hindrance::publisher : Hindrance::none;
 }
 
 TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next, bool was_stopped) const
 {
-  if (newest_.may_start()) {
+  if (newest_.session.may_start()) {
     return Hindrance::none;
   }
   if (was_stopped) {
     return Hindrance::stop;
   }
-  const auto age = age_of_publisher(next.first, next.info, options_.timeout);
-  const bool is_new = newest_.hindrance == Hindrance::publisher && age &&
-                      *age + options_.timeout < seconds(next.arrived - next.silent_since);
-  return is_new || !next.moves ? Hindrance::none : newest_.hindrance;
+  const auto age = age_of_publisher(next.session.first, next.info, options_.timeout);
+  const bool is_new = newest_.session.hindrance == Hindrance::publisher && age &&
+                      *age + options_.timeout < seconds(next.arrived - next.session.silent_since);
+  return is_new || !next.moves ? Hindrance::none : newest_.session.hindrance;
 }
 
 bool TeleopTopic::is_known(const Message & message) const
 {
-  return message.hindrance != Hindrance::publisher || !message.info.number ||
-         age_of_publisher(message.first, message.info, options_.timeout);
+  return message.session.hindrance != Hindrance::publisher || !message.info.number ||
+         age_of_publisher(message.session.first, message.info, options_.timeout);
 }
 
 TeleopTopic::Message TeleopTopic::newest() const
@@ -173,12 +183,12 @@ void TeleopTopic::serve(const std::stop_token & stop)
     rcl_cxx::PublisherId publisher{};
     {
       std::unique_lock lock(mutex_);
-      const auto starts = [&] { return newest_.session != served && newest_.may_start(); };
+      const auto starts = [&] { return newest_.session.number != served && newest_.session.may_start(); };
       if (!changed_.wait(lock, stop, starts) || closed_) {
         return;
       }
-      served = newest_.session;
-      publisher = newest_.first.publisher;
+      served = newest_.session.number;
+      publisher = newest_.session.first.publisher;
       stop_request_ = std::make_shared<StopRequest>();
     }
     Latency latency;
@@ -193,12 +203,13 @@ void TeleopTopic::serve(const std::stop_token & stop)
 std::uint64_t TeleopTopic::require_pause(std::uint64_t session, const rcl_cxx::PublisherId & publisher)
 {
   const std::lock_guard lock(mutex_);
-  const bool is_known = newest_.first.publisher == publisher || newest_.first.number == 1u;
-  if (newest_.session != session && newest_.follows_pause && is_known) {
+  Session & newest = newest_.session;
+  const bool is_known = newest.first.publisher == publisher || newest.first.number == 1u;
+  if (newest.number != session && newest.follows_pause && is_known) {
     return session;
   }
-  newest_.needs_pause = true;
-  return newest_.session;
+  newest.needs_pause = true;
+  return newest.number;
 }
 
 Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
@@ -215,7 +226,7 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
     if (!lease) {
       return lease.error();
     }
-    if (host_.stops() != first.stops) {
+    if (host_.stops() != first.session.stops) {
       return stopped_by_the_driver();  // after the session had begun
     }
     std::shared_ptr<StopRequest> stop_request;
@@ -276,7 +287,7 @@ Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)
 
 Status TeleopTopic::check_timeout(const Message & message, std::uint64_t session) const
 {
-  if (message.session != session || seconds(Clock::now() - message.arrived) > options_.timeout) {
+  if (message.session.number != session || seconds(Clock::now() - message.arrived) > options_.timeout) {
     return failure(ErrorCode::timeout, fmt::format("no message was received for {:.3g} s", options_.timeout));
   }
   return {};

@@ -55,22 +55,27 @@ class TeleopTopic {
     stop,       ///< while the session waited: the publisher has to pause
   };
 
+  /// Messages that follow each other.
+  struct Session {
+    std::uint64_t number = 0;
+    std::uint32_t stops = 0;           ///< CommandHost::stops() when it could begin
+    rcl_cxx::MessageInfo first;        ///< of its first message
+    Clock::time_point silent_since{};  ///< there were no messages before it
+    bool follows_pause = false;        ///< of the publisher (has_paused)
+    bool needs_pause = false;          ///< the next session: this one did not end for lack of messages
+    Hindrance hindrance{};             ///< unless it has been started
+    bool is_logged = false;            ///< its hindrance
+    bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
+  };
+
   struct Message {
     Expected<StreamTarget> target = StreamTarget{};
     Clock::time_point arrived{};
     std::uint64_t number = 0;
-    std::uint64_t session = 0;  ///< number of the session that the message belongs to
-    std::uint32_t stops = 0;    ///< CommandHost::stops() when that session could begin
-    TargetPeriod period{};      ///< between messages
+    TargetPeriod period{};  ///< between messages
     rcl_cxx::MessageInfo info;
-    rcl_cxx::MessageInfo first;        ///< of its session
-    Clock::time_point silent_since{};  ///< before that session
-    bool moves = false;                ///< commands a motion
-    bool follows_pause = false;        ///< its session: of the publisher (has_paused)
-    bool needs_pause = false;          ///< the next session: this one did not end for lack of messages
-    Hindrance hindrance{};             ///< of its session, if that has not been started yet
-    bool logged = false;               ///< its hindrance
-    bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
+    bool moves = false;  ///< commands a motion
+    Session session;     ///< that it belongs to
   };
 
   /// Time from a message to its first command.

@@ -18,8 +18,8 @@ class MotionTracker {
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
-    /// Incremented when the robot program ends, also if it is found paused without having been seen to run,
-    /// or the connection is re-established, each of which ends all motions.
+    /// Incremented when the robot program ends, when it is found paused without having been seen to run, and
+    /// when the connection is re-established, each of which ends all motions.
     std::uint32_t program = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
