@@ -14,6 +14,8 @@ namespace ur_ros_rtde {
 namespace {
 /// Publishers that were there before the driver are found within this time.
 constexpr std::chrono::seconds discovery_time{3};
+/// The rate of a publisher may have been lower before its first message that arrived.
+constexpr double rate_tolerance = 1.05;
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -142,8 +144,9 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_first(const Message & next, boo
   if (newest_.number > 0 && next.info.publisher == newest_.info.publisher) {
     return newest_.moves || was_stopped ? Hindrance::gap : Hindrance::none;
   }
-  // A publisher that counts its messages shows its age later.
-  const bool was_ended = newest_.number > 0 && (was_stopped || newest_.session.needs_pause);
+  // A publisher that counts its messages shows its age later. A session that was hindered has not begun.
+  const bool was_ended = newest_.number > 0 && (was_stopped || newest_.session.needs_pause ||
+                                                newest_.session.hindrance != Hindrance::none);
   const bool is_soon = next.arrived - next.session.silent_since < discovery_time;
   const bool may_be_old = was_ended ? next.info.number || is_soon : newest_.number == 0 && is_soon;
   return may_be_old && next.info.number != 1u ? Hindrance::publisher : Hindrance::none;
@@ -159,7 +162,7 @@ TeleopTopic::Hindrance TeleopTopic::hindrance_of_following(const Message & next,
   }
   const auto age = age_of_publisher(next.session.first, next.info, options_.timeout);
   const bool is_new = newest_.session.hindrance == Hindrance::publisher && age &&
-                      *age + options_.timeout < seconds(next.arrived - next.session.silent_since);
+                      rate_tolerance * *age < seconds(next.arrived - next.session.silent_since);
   return is_new || !next.moves ? Hindrance::none : newest_.session.hindrance;
 }
 
