@@ -188,6 +188,22 @@ TEST_F(ScriptTest, IsEndedIfItIsPausedSoThatItCannotResume)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptTest, IsEndedIfItIsPausedBeforeASampleHasShownItRunning)
+{
+  make_both();
+  ScriptOptions options;
+  options.timeout = 10s;
+  options.on_text = [&](const std::string &) {  // with the marker of its begin
+    controller.control({{"command", "pause_program"}});
+    ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::paused; }));
+  };
+  const auto report =
+      run_script("def f():\n  textmsg(\"on\")\n  while True:\n    sync()\n  end\nend\n", options);
+  EXPECT_EQ(report.end, ScriptEnd::robot_stopped);
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptTest, MayBePausedIfItsCallerWaits)
 {
   make_both();

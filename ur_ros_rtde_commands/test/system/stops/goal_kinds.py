@@ -54,6 +54,7 @@ class GoalKind:
     source: str = ""  # topic of the poses that the goal follows
     runs_script: bool = False  # in place of the control program: not with the URCap; in local control, only the watchdog ends it
     turns: bool = False  # the base joint leads: a stop of the TCP decelerates its rotation, in rad/s^2
+    has_corner: bool = False  # in which the arm slows down and accelerates again
     package: str = "ur_ros_rtde_commands"
     limits: Callable[[Fields], Tuple[float, float]] = lambda _fields: (1.4, 100.0)  # of PATH: acceleration, jerk
 
@@ -271,7 +272,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_l_relative", "move_l_relative", PACKAGE + "MoveLRelative", _move_l_relative),
     GoalKind("move_p", "move_p", PACKAGE + "MoveP", _move_p, deceleration=_unspecified, runs_script=True),
     GoalKind("move_c", "move_c", PACKAGE + "MoveC", _move_c, deceleration=_unspecified, runs_script=True),
-    GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified, runs_script=True),
+    GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified, runs_script=True, has_corner=True),
     GoalKind("speed_j", "speed_j", PACKAGE + "SpeedJ", _speed_j, JOINT, _own),
     GoalKind("speed_l", "speed_l", PACKAGE + "SpeedL", _speed_l, LINEAR, _own),
     GoalKind("jog", "jog", PACKAGE + "Jog", _jog),

@@ -105,7 +105,8 @@ class Checks:
         limit = self._case.event.begin_limit
         if limit is None or stopping.latency is None or self._brakes_along_path() or self._case.kind.space == MODE:
             return
-        if self._only_the_watchdog_ends_it() or self._case.event.slows_time and self._change_of_speed(trace, stopping.event) > 0.0:
+        accelerates = self._case.kind.has_corner or self._change_of_speed(trace, stopping.event) > 0.0
+        if self._only_the_watchdog_ends_it() or self._case.event.slows_time and accelerates:
             return
         latency = stopping.latency
         if self._case.kind.space == PATH and self._lane.second_request is not None:  # it may brake along its path until then

@@ -305,12 +305,13 @@ bool ScriptMonitor::complete_if_it_must_stop()
   return complete_if_told(ScriptEnd::interrupted) || complete_if_late();
 }
 
-/// A safety stop pauses the program, too, and is told by its own bits.
+/// A safety stop pauses the program, too, and is told by its own bits. The program may have been paused before
+/// a sample has shown it running.
 bool ScriptMonitor::is_paused(const Sample & sample)
 {
   const bool pauses =
       sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused;
-  if (!has_played_ || !pauses) {
+  if (!begin_seen_ || sample.received <= *begin_seen_ || !pauses) {
     pause_seen_.reset();
     return false;
   }
