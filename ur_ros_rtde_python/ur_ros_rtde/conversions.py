@@ -38,11 +38,13 @@ def pose(position: ArrayLike, orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> 
     return numpy.concatenate((where, rotation))
 
 
-def trajectory(times: ArrayLike, positions: ArrayLike, velocities: ArrayLike | None = None,
-               accelerations: ArrayLike | None = None) -> Any:
-    """Returns a trajectory_msgs/JointTrajectory for execute_parametrized_trajectory.
+def trajectory(times: ArrayLike, positions: ArrayLike, velocities: ArrayLike | None = None, accelerations: ArrayLike | None = None, *,
+               joint_names: Sequence[str] = (), start_at: float = 0.0) -> Any:
+    """Returns a trajectory_msgs/JointTrajectory for execute_parametrized_trajectory and follow_joint_trajectory.
 
-    `times` are the N times from the start in s. The other arrays have N rows of 6 joints in rad, rad/s and rad/s^2.
+    `times` are the N times from the start in s. The other arrays have N rows of 6 joints in rad, rad/s and rad/s^2. For
+    follow_joint_trajectory, which needs `joint_names`: `start_at` is the time of its start in s since the epoch, so that several arms
+    start together; 0: at once.
     """
     duration, point = interface("builtin_interfaces/msg/Duration"), interface("trajectory_msgs/msg/JointTrajectoryPoint")
     seconds = numpy.asarray(times, float)
@@ -53,11 +55,17 @@ def trajectory(times: ArrayLike, positions: ArrayLike, velocities: ArrayLike | N
     for name, values in arrays.items():
         if values.shape != (len(seconds), JOINT_COUNT):
             raise ValueError(f"{name} has the shape {values.shape}: expected {(len(seconds), JOINT_COUNT)}")
-    nanoseconds = numpy.rint(1e9 * seconds).astype(int).tolist()
-    return interface("trajectory_msgs/msg/JointTrajectory")(points=[
-        point(time_from_start=duration(sec=time // 10**9, nanosec=time % 10**9),
-              **{name: values[index].tolist() for name, values in arrays.items()})
-        for index, time in enumerate(nanoseconds)])
+    points = [point(time_from_start=duration(**_parts(time)), **{name: values[index].tolist() for name, values in arrays.items()})
+              for index, time in enumerate(seconds)]
+    message = interface("trajectory_msgs/msg/JointTrajectory")(joint_names=list(joint_names), points=points)
+    message.header.stamp = interface("builtin_interfaces/msg/Time")(**_parts(start_at))
+    return message
+
+
+def _parts(seconds: float) -> dict[str, int]:
+    """Returns the fields of a time or duration."""
+    nanoseconds = round(1e9 * seconds)
+    return {"sec": nanoseconds // 10**9, "nanosec": nanoseconds % 10**9}
 
 
 def numbers(message: Any) -> Array:

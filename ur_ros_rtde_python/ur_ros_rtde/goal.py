@@ -1,4 +1,4 @@
-"""A running goal."""
+"""A running goal, and several that belong together."""
 
 import asyncio
 import concurrent.futures
@@ -206,3 +206,39 @@ class Goal:
             self._finished.set_result(response)
             self._changed.notify_all()
         self._on_finished(self)
+
+
+def wait_for_all(*goals: Goal, timeout: float | None = None) -> list[Any]:
+    """Waits until all goals, of one arm or of several, have succeeded. Returns their results in the order of the goals.
+
+    If one of them fails, the others are canceled, and its CommandFailed is raised when all arms are at standstill. The same applies to
+    a lost driver (NoDriver), to `timeout` s (Timeout), and to Ctrl-C. The others begin to decelerate when the result of the failed goal
+    is there, that is at the standstill of its arm.
+    """
+    try:
+        _wait_for_success(goals, timeout)
+        return [goal._outcome() for goal in goals]
+    except BaseException:
+        for goal in goals:  # all decelerate at the same time
+            with contextlib.suppress(RobotError):
+                goal.request_cancel()
+        for goal in goals:
+            goal.abandon()
+        raise
+
+
+def _wait_for_success(goals: tuple[Goal, ...], timeout: float | None) -> None:
+    """Returns when all goals have succeeded. Raises what ends the wait before."""
+    end = None if timeout is None else time.monotonic() + timeout
+    lost_since: dict[Goal, float | None] = {}
+    while running := [goal for goal in goals if not goal.is_finished]:
+        rest = CHECK_PERIOD if end is None else min(CHECK_PERIOD, end - time.monotonic())
+        if rest <= 0.0:
+            names = ", ".join(goal.name for goal in running)
+            raise Timeout(f"not ended within {timeout:g} s: {names}; all goals were canceled")
+        concurrent.futures.wait([goal._finished for goal in running], rest, concurrent.futures.FIRST_COMPLETED)
+        for goal in goals:
+            if goal.is_finished:
+                goal._outcome()
+            else:
+                lost_since[goal] = goal._check_driver(lost_since.get(goal))

@@ -53,6 +53,11 @@ class State:
         self._latest: dict[str, Any] = {}  # of transient local topics
 
     @property
+    def joint_names(self) -> list[str]:
+        """Names of the joints from shoulder_pan to wrist_3, with the prefix of the arm."""
+        return list(self._joints().name)
+
+    @property
     def joint_positions(self) -> Array:
         """Joint positions from shoulder_pan to wrist_3, rad."""
         return numbers(self._joints().position)

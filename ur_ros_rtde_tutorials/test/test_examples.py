@@ -1,5 +1,6 @@
 """Runs the examples."""
 
+import contextlib
 import json
 import pathlib
 import signal
@@ -138,3 +139,28 @@ def test_the_cpp_example_ends_with_the_driver(addresses, end):
         client.close()
         driver.stop()
         simulator.stop()
+
+
+@pytest.fixture(scope="module")
+def two_simulators(addresses):
+    """Two robots with drivers in the namespaces left and right."""
+    with contextlib.ExitStack() as resources:
+        simulators = []
+        for address, namespace in zip(addresses[1:3], ("left", "right"), strict=True):
+            simulators.append(Simulator(address))
+            resources.callback(simulators[-1].stop)
+            resources.callback(start_node("driver", address, "ur_type:=ur10e", namespace=namespace).stop)
+        yield simulators
+
+
+def test_two_arms_stop_together(two_simulators):
+    def start():
+        return Process([find_program("ur_ros_rtde_tutorials", "two_arms.py")])
+
+    example = start()
+    assert example.wait(60.0) == 0 and "both arms have arrived" in example.output(), example.output()
+    example = start()
+    wait_for(lambda: not any(simulator.is_at_rest() for simulator in two_simulators), 30.0, "both arms to move")
+    two_simulators[0].control("protective_stop", reason="a test")
+    assert example.wait(20.0) == 1 and "both arms are at rest: " in example.output(), example.output()
+    assert all(simulator.is_at_rest() for simulator in two_simulators)

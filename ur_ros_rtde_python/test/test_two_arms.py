@@ -1,0 +1,104 @@
+"""Goals of two arms, each with a driver of its own, that belong together."""
+
+import concurrent.futures
+import contextlib
+import time
+
+import numpy as np
+import pytest
+from support import HOME, TIMEOUT_FACTOR, Simulator, start_node, wait_for
+from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, trajectory, wait_for_all
+
+PLUGINS = "plugins:=[move_j,stop,follow_joint_trajectory,trigger_protective_stop,make_ready]"
+AWAY = [1.0, *HOME[1:]]
+SLOW = 0.2  # rad/s: takes 5 s to AWAY
+SLOWER = 0.02  # takes 50 s: a driver counts as lost some seconds after its last message
+CYCLE = 0.002  # s
+
+
+class Arm:
+    """A simulated robot with its driver and its Robot."""
+
+    def __init__(self, address, namespace, resources):
+        self.simulator = Simulator(address)
+        resources.callback(self.simulator.stop)
+        self.driver = start_node("driver", address, "ur_type:=ur10e", PLUGINS, namespace=namespace)
+        resources.callback(self.driver.stop)
+        self.robot = resources.enter_context(Robot(namespace, timeout=TIMEOUT_FACTOR * 20.0))
+
+    def move_home(self):
+        assert self.robot.state.wait_until(lambda state: state.driver_state == "READY", TIMEOUT_FACTOR * 30.0), self.driver.output()
+        self.robot.move_j(HOME, speed=3.0, acceleration=15.0)
+
+    def is_stopped_early(self):
+        return self.simulator.is_at_rest() and self.robot.state.joint_positions[0] < 0.9
+
+    def start_time(self):
+        """Returns the time of the first sample in which the target moves."""
+        samples = self.robot.state.stream("target_joint_velocities", duration=TIMEOUT_FACTOR * 20.0)
+        with contextlib.closing(samples):
+            return next(sample.time for sample in samples if np.abs(sample.target_joint_velocities).max() > 0.0)
+
+
+@pytest.fixture(scope="module")
+def both(addresses):
+    with contextlib.ExitStack() as resources:
+        yield [Arm(address, namespace, resources) for address, namespace in zip(addresses[1:3], ("left", "right"), strict=True)]
+
+
+@pytest.fixture
+def arms(both):
+    for arm in both:
+        arm.move_home()
+    return both
+
+
+def test_the_results_come_in_the_order_of_the_goals(arms):
+    first, second = (arm.robot.start.move_j(AWAY, speed) for arm, speed in zip(arms, (1.0, 3.0), strict=True))
+    assert [result.success for result in wait_for_all(first, second, timeout=TIMEOUT_FACTOR * 20.0)] == [True, True]
+
+
+def test_a_failure_of_one_arm_stops_the_other(arms):
+    goals = [arm.robot.start.move_j(AWAY, SLOW) for arm in arms]
+    arms[1].robot.trigger_protective_stop()
+    with pytest.raises(CommandFailed, match="the robot is in a protective stop"):
+        wait_for_all(*goals)
+    assert all(arm.is_stopped_early() for arm in arms) and all(goal.is_finished for goal in goals)
+    arms[1].robot.make_ready()
+
+
+def test_a_rejection_stops_the_arm_that_has_started(arms):
+    with pytest.raises(Rejected, match="speed"), arms[0].robot.start.move_j(AWAY, SLOW), arms[1].robot.start.move_j(AWAY, 9.0):
+        pytest.fail("the block was executed")
+    assert arms[0].is_stopped_early()
+
+
+def test_the_timeout_stops_both_arms(arms):
+    goals = [arm.robot.start.move_j(AWAY, SLOW) for arm in arms]
+    with pytest.raises(Timeout, match="not ended within 0.5 s: move_j, move_j"):
+        wait_for_all(*goals, timeout=0.5)
+    assert all(arm.is_stopped_early() for arm in arms)
+
+
+def test_both_arms_start_at_the_same_time(arms):
+    times = np.linspace(0.0, 2.0, 21)
+    start_at = time.time() + 2.0 * TIMEOUT_FACTOR
+    plans = [trajectory(times, arm.robot.state.joint_positions + np.outer(0.1 * (1.0 - np.cos(np.pi * times)), [sign, 0, 0, 0, 0, 0]),
+                        joint_names=arm.robot.state.joint_names, start_at=start_at) for arm, sign in zip(arms, (1, -1), strict=True)]
+    with concurrent.futures.ThreadPoolExecutor() as threads:
+        starts = [threads.submit(arm.start_time) for arm in arms]
+        wait_for_all(*(arm.robot.start.follow_joint_trajectory(plan) for arm, plan in zip(arms, plans, strict=True)))
+    late = [start.result() - start_at for start in starts]
+    assert min(late) > -CYCLE and max(late) < 0.1, late
+
+
+def test_a_lost_driver_stops_the_other_arm(arms, addresses):
+    with contextlib.ExitStack() as resources:
+        lost = Arm(addresses[3], "lost", resources)
+        lost.move_home()
+        goals = [arm.robot.start.move_j(AWAY, SLOWER) for arm in (lost, arms[0])]
+        lost.driver.kill()
+        with pytest.raises(NoDriver, match="while move_j was running"):
+            wait_for_all(*goals)
+        assert arms[0].is_stopped_early()
+        wait_for(lost.simulator.is_at_rest, 10.0, "the watchdog to stop the arm")
