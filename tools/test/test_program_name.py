@@ -54,9 +54,10 @@ def test_every_command_has_help_without_a_build():
         assert result.returncode == 0 and "usage: " in result.stdout.lower(), (command, result.stderr)
 
 
-def test_commands_of_the_checkout_run_in_the_working_directory(tmp_path):
-    result = run_inside("new", "command", "wag", cwd=tmp_path)
-    assert result.returncode == 0 and (tmp_path / "wag_command" / "package.xml").is_file(), result.stderr
+def test_a_package_is_created_in_the_working_directory(tmp_path):
+    for run, package in ((run_inside, "wag_command"), (run_outside, "other_command")):  # run_outside: without a build
+        result = run("new", "command", "wag", "--package", package, cwd=tmp_path)
+        assert result.returncode == 0 and (tmp_path / package / "package.xml").is_file(), result.stderr
 
 
 def test_commands_of_the_installed_program_run_from_the_checkout(tmp_path):

@@ -1,4 +1,4 @@
-"""Follows docs/use/writing_a_plugin.md step by step in a temporary workspace. ur_tools.new writes the packages."""
+"""Follows docs/use/writing_a_plugin.md step by step in a temporary workspace. `ur new` writes the packages."""
 
 import os
 import re

@@ -15,7 +15,7 @@ from typing import Any, Callable, List, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
-from . import console, disk, docs, doctor, fuzz, lint, new, pin_hashes, sbom, simulation, testing, viewer
+from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulation, testing, viewer
 from .environment import program, run_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
@@ -37,6 +37,7 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "record": "record RTDE outputs of the robot to a CSV file",
        "plot": "draw a recording: ur plot run.csv",
        "compare": "compare two recordings: ur compare before.csv after.csv",
+       "new": "create a package with a plugin: ur new command NAME",
        "completion": "print what lets a shell complete command lines: eval \"$(./ur completion bash)\"",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
@@ -130,7 +131,7 @@ def _run_cli_from_sources(python: str, arguments: List[str]) -> None:
 def command_cli(options: argparse.Namespace) -> int:
     """Runs `ur call …` of ur_ros_rtde_cli for `./ur call …`. Builds only if it is missing: the driver may be running."""
     arguments = [options.command, *_forwarded(options)]
-    if any(argument in ("-h", "--help") for argument in arguments):
+    if options.command == "new" or any(argument in ("-h", "--help") for argument in arguments):
         _run_cli_from_sources(sys.executable, arguments)
     layout = _layout(options)
     try:
@@ -158,10 +159,6 @@ def command_view(options: argparse.Namespace) -> int:
         os.execve(sys.executable, [sys.executable, str(source / "scripts" / "view"), *arguments], env)
     viewer.execute(layout, arguments, options.jobs)
     return 0  # not reached
-
-
-def command_new(options: argparse.Namespace) -> int:
-    return new.run(options.kind, options.name, options.package, options.directory, options.description)
 
 
 def command_format(options: argparse.Namespace) -> int:
@@ -283,13 +280,6 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
 
     for name, text in CLI.items():
         add_forwarding(name, command_cli, text)
-    sub = add("new", command_new, "create a package with a plugin: a command, a dashboard command or an extension")
-    sub.add_argument("kind", choices=new.KINDS)
-    sub.add_argument("name", help="name of the plugin and its action, such as pick_part")
-    sub.add_argument("--package", default="", metavar="NAME", help="name of the package (default: NAME_KIND)")
-    sub.add_argument("--description", default="", metavar="TEXT", help="one sentence that `ur plugins` shows (default: an example)")
-    sub.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
-                     help="folder in which the package is created (default: the current folder)")
 
     sub = add("docs", command_docs, "build the site of the documentation; dead links are errors")
     sub.add_argument("--serve", action="store_true", help="show the site on this machine until Ctrl-C")

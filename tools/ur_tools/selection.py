@@ -21,7 +21,7 @@ _CPP = (".cpp", ".hpp", ".h", ".c")
 _ALL_PACKAGES = ("wheels/", "tools/cmake/")
 _NO_TESTS = ("LICENSE", ".")
 # Folders that belong to a module of ur_tools.
-_FOLDERS_OF_MODULES = {"tools/templates/": "new", "bench/": "bench", "chaos/": "chaos", "demo/": "demo",
+_FOLDERS_OF_MODULES = {"bench/": "bench", "chaos/": "chaos", "demo/": "demo",
                        "compare_recording/": "compare_recording",
                        "tools/sanitizers/": "testing", "tools/system_packages.txt": "system_packages"}
 

@@ -20,14 +20,16 @@ COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "compare": "compare two recordings and draw both",
             "urdf": "print the URDF of an arm",
             "calibration": "save the calibration of an arm for its URDF",
+            "new": "create a package with a plugin: a command, a dashboard command or an extension",
             "doctor": "check a robot over the network: ur doctor --robot ADDRESS",
             "completion": "print what lets bash or zsh complete command lines",
             "view": "show robots in the browser"}
 VIEW = "view"  # a program of another package, with options of its own
-WITHOUT_NODES = ("plugins", "plot", "compare", "urdf", "calibration", "doctor", "completion")  # commands that communicate with no node
+# Commands that communicate with no node.
+WITHOUT_NODES = ("plugins", "plot", "compare", "urdf", "calibration", "new", "doctor", "completion")
 
 # Commands of the script `ur` in a checkout. They are not installed.
-CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "new", "docs", "format", "lint",
+CHECKOUT_COMMANDS = ("demo", "test", "build", "sim", "bench", "plan", "chaos", "fuzz", "shell", "docs", "format", "lint",
                      "lock", "sbom", "doctor", "clean")
 
 # argcomplete sets it when a shell asks for completions.

@@ -1,14 +1,14 @@
-"""./ur new: creates a package with a working plugin from a template."""
+"""Creates a package with a plugin: a command, a dashboard command or an extension."""
 
+import argparse
 import pathlib
 import re
 from typing import Dict
 from xml.sax.saxutils import escape
 
-from . import console
-from .layout import ROOT
+from .errors import CliError, OperationFailed
 
-TEMPLATES = ROOT / "tools" / "templates"
+TEMPLATES = pathlib.Path(__file__).parent / "templates"
 # Folders of templates of each kind of plugin, and the default description.
 KINDS = {"command": ("own_action", "command"), "dashboard": ("dashboard",), "extension": ("own_action", "extension")}
 DESCRIPTIONS = {"command": "Turns wrist 3 by an angle and back",
@@ -19,7 +19,7 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 def _checked(what: str, name: str) -> str:
     if not _NAME.fullmatch(name):
-        raise console.Failure(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
+        raise CliError(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
                               "letter, as in pick_part")
     return name
 
@@ -32,7 +32,7 @@ def _snake(pascal: str) -> str:
 def _pascal(name: str) -> str:
     pascal = "".join(part.capitalize() for part in name.split("_"))
     if _snake(pascal) != name:
-        raise console.Failure(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
+        raise CliError(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
     return pascal
 
 
@@ -47,17 +47,17 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path, description
     escaped = {placeholder: escape(word) for placeholder, word in words.items()}
     target = folder / words["my_package"]
     if not folder.is_dir():
-        raise console.Failure(f"there is no folder {folder}; create it, or choose another with --directory")
+        raise CliError(f"there is no folder {folder}; create it, or choose another with --directory")
     if target.exists():
-        raise console.Failure(f"{target} exists already; remove it, or choose another name with --package")
+        raise CliError(f"{target} exists already; remove it, or choose another name with --package")
     try:
         for templates in (TEMPLATES / part for part in KINDS[kind]):
-            for source in sorted(path for path in templates.rglob("*") if path.is_file()):
+            for source in sorted(path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc"):
                 file = target / _filled(str(source.relative_to(templates)), words)
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text(_filled(source.read_text(), escaped if source.suffix == ".xml" else words))
     except OSError as error:
-        raise console.Failure(f"{error.filename} cannot be written: {error.strerror}; choose another folder with --directory") from None
+        raise OperationFailed(f"{error.filename} cannot be written: {error.strerror}; choose another folder with --directory") from None
     return target
 
 
@@ -72,12 +72,22 @@ def _purpose(file: pathlib.Path, kind: str, described: bool) -> str:
     return ""
 
 
-def run(kind: str, name: str, package: str, folder: pathlib.Path, description: str) -> int:
-    target = create(kind, name, package, folder, description)
-    purposes = {path: _purpose(path, kind, bool(description)) for path in target.rglob("*") if path.is_file()}
-    width = max(len(str(file.relative_to(folder))) for file in purposes)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("kind", choices=KINDS)
+    parser.add_argument("name", help="name of the plugin and its action, such as pick_part")
+    parser.add_argument("--package", default="", metavar="NAME", help="name of the package (default: NAME_KIND)")
+    parser.add_argument("--description", default="", metavar="TEXT", help="one sentence that `ur plugins` shows (default: an example)")
+    parser.add_argument("--directory", type=pathlib.Path, default=pathlib.Path("."), metavar="DIR",
+                        help="folder in which the package is created (default: the current folder)")
+
+
+def run(options: argparse.Namespace) -> int:
+    target = create(options.kind, options.name, options.package, options.directory, options.description)
+    files = [path for path in target.rglob("*") if path.is_file()]
+    purposes = {path: _purpose(path, options.kind, bool(options.description)) for path in files}
+    width = max(len(str(file.relative_to(options.directory))) for file in purposes)
     for file in sorted(purposes, key=lambda path: (not purposes[path], path)):
-        console.line(f"    {str(file.relative_to(folder)):{width}}  {purposes[file]}".rstrip())
-    console.line("Change the files that have a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS "
-                 "is not installed); docs/use/writing_a_plugin.md continues from there.")
+        print(f"    {str(file.relative_to(options.directory)):{width}}  {purposes[file]}".rstrip())
+    print("Change the files that have a remark. Then build the package with `colcon build` in the workspace (in `./ur shell` if ROS is\n"
+          "not installed). The page \"Writing a plugin\" of the documentation continues from there.")
     return 0
