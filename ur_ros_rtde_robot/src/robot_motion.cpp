@@ -1,4 +1,6 @@
 // Who may move the arm, what moves it, and how it is stopped.
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "motion/motion_blocker.hpp"
@@ -103,6 +105,10 @@ std::function<Expected<std::shared_ptr<void>>()> Robot::permission(const Lease &
   return [this, permit = lease.permit_]() -> Expected<std::shared_ptr<void>> {
     if (!permit) {
       return failure(ErrorCode::exception, "there is no lease");
+    }
+    if (!moves_arm(permit->claim().resource)) {
+      return failure(ErrorCode::exception, fmt::format("a lease of the resource `{}` does not move the arm",
+                                                       to_string(permit->claim().resource)));
     }
     if (auto why = permit->revoked()) {
       return tl::unexpected(*std::move(why));  // without becoming an activity

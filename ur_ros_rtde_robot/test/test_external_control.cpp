@@ -123,6 +123,26 @@ TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
   EXPECT_TRUE(works());
 }
 
+TEST_F(ExternalControlTest, DoesNotExecuteTheCommandOfAnEarlierProgram)
+{
+  start(options());
+  play();
+  ASSERT_TRUE(becomes_ready());
+  control()->speedJ({0.0, 0.0, 0.0, 0.0, 0.0, 0.3}, 2.0, 0.0);
+  ASSERT_TRUE(eventually([&] { return !at_rest(); }));
+  {
+    const auto kept = robot->control_for_queries().hold();  // so that the driver is late to connect again
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(eventually([&] { return !robot->latest()->is_program_running() && at_rest(); }));
+    play();
+    ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); }));
+    EXPECT_TRUE(keeps_still());
+  }
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_TRUE(keeps_still());
+  EXPECT_TRUE(works());
+}
+
 TEST_F(ExternalControlTest, EndsTheProgramWithItsNode)
 {
   start(options());

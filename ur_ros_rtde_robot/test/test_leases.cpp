@@ -246,6 +246,10 @@ TEST_F(LeaseTest, NothingMovesWithoutOne)
   EXPECT_THROW(control->stopScript(), std::logic_error);
   EXPECT_TRUE(control->isSteady()) << "a query works";
   EXPECT_TRUE(robot->activities().empty());
+  const auto of_outputs = robot->acquire({.resource = Resource::io, .owner = "/other"});
+  ASSERT_TRUE(of_outputs);
+  EXPECT_THROW(robot->control(*of_outputs)->speedJ(turning, 2.0, 0.0), RobotError)
+      << "a lease of another resource";
   const Lease lease = acquire();
   EXPECT_TRUE(robot->control(lease)->speedJ(turning, 2.0, 0.0)) << "the holder of a lease may move the arm";
   EXPECT_TRUE(robot->stop_motion());

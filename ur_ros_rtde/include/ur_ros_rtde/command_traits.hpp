@@ -23,6 +23,8 @@ struct CommandTraits {
   /// success, the mode and the arm are left as they are. What else the goal has started is stopped at its
   /// end. If the goal has a field `bool outlives_client` that is false, the mode ends with the client.
   bool leaves_mode_active = false;
+  /// Switches freedrive or teach mode on or off: its goals are accepted while the arm is guided by hand.
+  bool switches_hand_guiding = false;
   /// Accepts and executes goals in every state of the robot; needs the dashboard server only.
   bool allowed_in_any_state = false;
   /// The control program cannot answer queries during a goal.

@@ -55,6 +55,9 @@ class DashboardCommand : public DashboardPlugin {
   virtual bool stops_program() const { return false; }
   /// Of those: the arm has no power afterwards. A request of make_ready that is under way ends before.
   virtual bool powers_off() const { return false; }
+  /// The command brings the arm into operation, or moves it. Its request is not sent after a stop that came
+  /// later than the goal.
+  virtual bool starts_arm() const { return false; }
   /// The command stops the arm: its goals are served by the thread that serves stops, beside the limit of
   /// goals.
   virtual bool stops_arm() const { return stops_program(); }
@@ -93,6 +96,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
  private:
   Status check(std::vector<GoalQuery> &) override
   {
+    stops_before_ = host_.stops();
     Check check;
     command_.check(message_, check);
     const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
@@ -110,7 +114,16 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     if (command_.powers_off()) {
       host_.wait_for_startup_requests();
     }
-    return guarded(stop_request(), [this] { return command_.run(message_, *run_); });
+    if (command_.starts_arm()) {
+      auto request = host_.begin_startup_request(stops_before_);
+      if (!request) {
+        return request.error();
+      }
+      run_->set_startup_request(*std::move(request));
+    }
+    const Outcome outcome = guarded(stop_request(), [this] { return command_.run(message_, *run_); });
+    run_->set_startup_request(nullptr);
+    return outcome;
   }
   void send_result(const Outcome & outcome, bool abandoned) override
   {
@@ -127,6 +140,7 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   DashboardCommand & command_;
   DashboardHost & host_;
   const typename A::Goal & message_;
+  std::uint32_t stops_before_ = 0;  ///< CommandHost::stops()
   std::shared_ptr<void> hold_;  ///< of the control program, until the program of the robot has been stopped
   std::optional<Run> run_;
 };

@@ -21,6 +21,9 @@ struct ExpectedState {
   /// The answer to the command is proof enough. The state may have been left again before it is seen, as when
   /// the driver starts its control program again: it is waited for, but for 1 s at most, and not required.
   bool is_confirmed_by_answer = false;
+  /// The arm may move in this state. Of a command that starts the arm: a stop that comes before it waits for
+  /// it, and then ends it.
+  bool is_awaited_by_stops = false;
 };
 
 /// The oldest version of PolyScope that supports a command.
@@ -86,6 +89,9 @@ class DashboardRun {
   /// Returns early, with the reason, when the goal has to stop.
   std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
 
+  /// Of a command that starts the arm: ends with the answer to its first command.
+  void set_startup_request(std::shared_ptr<void> request) { startup_request_ = std::move(request); }
+
   /// The last answer to a command or query, for the result.
   const std::string & answer() const { return answer_; }
 
@@ -98,6 +104,7 @@ class DashboardRun {
 
   DashboardConnection & connection_;
   std::shared_ptr<const StopRequest> stop_request_;
+  std::shared_ptr<void> startup_request_;  ///< of CommandHost
   std::string answer_;
 };
 

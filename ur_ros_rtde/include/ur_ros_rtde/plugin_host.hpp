@@ -81,9 +81,9 @@ class CommandHost : public PluginHost {
   /// For a request that brings the arm into operation, which is under way while the returned object exists.
   /// Null, and it must not be sent, if `stops` are not all stops.
   std::shared_ptr<void> begin_startup_request(std::uint32_t stops);
-  /// For a command that powers the arm off, after a stop has begun: waits until no request is under way that
-  /// would power it on again, but at most 2.5 s.
-  void wait_for_startup_requests();
+  /// After a stop has begun: waits until no request is under way that would bring the arm into operation
+  /// again, but at most 2.5 s. Returns whether one was.
+  bool wait_for_startup_requests();
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
   void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
@@ -128,6 +128,9 @@ class DashboardHost : public PluginHost {
       commands_->wait_for_startup_requests();
     }
   }
+  std::uint32_t stops() const { return commands_ != nullptr ? commands_->stops() : 0; }
+  /// Fails (preempted) if the request must not be sent. Null without command server.
+  Expected<std::shared_ptr<void>> begin_startup_request(std::uint32_t stops) const;
 
  private:
   DashboardConnection & connection_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <ur_ros_rtde_msgs/msg/arm_state.hpp>
 #include <ur_ros_rtde_msgs/msg/motion_feedback.hpp>
+#include <utility>
 #include <vector>
 
 #include "ur_ros_rtde/detail/run_context.hpp"
@@ -160,6 +161,13 @@ class Run {
   void publish(const void * feedback) const { context_.publish_feedback(feedback); }
 
  private:
+  friend class TargetStream;
+  /// For how long control() waits for the call of another thread: a stream must not outlast its timeout.
+  /// Zero: the default of Locked. Otherwise its calls go before those of others. Returns what was set before.
+  std::chrono::milliseconds exchange_patience(std::chrono::milliseconds patience)
+  {
+    return std::exchange(patience_, patience);
+  }
   using Distance = std::function<double(const Sample &)>;
   Outcome until_reached(const Distance & distance, double tolerance, const char * unit);
   Outcome until_at(const Distance & distance, double tolerance, const char * unit);
@@ -181,6 +189,7 @@ class Run {
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;
   MotionMark mark_;
+  std::chrono::milliseconds patience_{0};
 };
 
 /// Run with the result and the feedback of action `A`.

@@ -96,6 +96,9 @@ class TargetStream {
   TargetStream(Run & run, std::unique_ptr<TargetFollower> follower, const StreamOptions & options);
   /// The same with a follower that outlives this object.
   TargetStream(Run & run, TargetFollower & follower, const StreamOptions & options);
+  ~TargetStream();
+  TargetStream(const TargetStream &) = delete;
+  TargetStream & operator=(const TargetStream &) = delete;
 
   /// Waits for the next package; see Run::next().
   [[nodiscard]] std::optional<StopReason> wait();
@@ -104,7 +107,8 @@ class TargetStream {
   [[nodiscard]] Status set(const StreamTarget & target);
   [[nodiscard]] Status set(const StreamTarget & target, double period);
   /// Sends the command of this cycle. Fails (timeout) if there has been no target for StreamOptions::timeout,
-  /// and close to a singularity (safety_violation).
+  /// and close to a singularity (safety_violation). Throws RobotError (busy) if another thread keeps the
+  /// control interface for longer than that.
   [[nodiscard]] Status send();
 
   /// The newest package.
@@ -118,6 +122,7 @@ class TargetStream {
   TargetFollower & follower_;
   const StreamOptions options_;
   const double cycle_;
+  const std::chrono::milliseconds patience_;  // of Run before this stream
   Sample sample_;
   double elapsed_ = 0.0;  // s between the last two packages
   TargetPeriod period_;

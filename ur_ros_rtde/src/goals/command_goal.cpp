@@ -29,6 +29,15 @@ Status query_dashboard(const Robot & robot)
   return mode ? Status() : tl::unexpected(mode.error());
 }
 
+/// The samples show what the dashboard server has told some cycles later.
+void wait_for_effects(const Robot & robot)
+{
+  constexpr int cycles = 5;
+  Sample sample = robot.latest().value_or(Sample{});
+  for (int i = 0; i < cycles && robot.wait_for_next(sample, milliseconds(100)); ++i) {
+  }
+}
+
 /// The failure may be a consequence of a lost connection or of an ended program.
 bool may_be_consequence(ErrorCode code)
 {
@@ -49,7 +58,7 @@ Claim CommandGoal::claim()
   result.resource = command_->traits.resource;
   result.owner = action();
   result.id = id().short_string();
-  result.switches_hand_guiding = command_->traits.leaves_mode_active;
+  result.switches_hand_guiding = command_->traits.switches_hand_guiding;
   result.blocks_queries = command_->traits.blocks_queries;
   result.preempts_only_own = !command_->traits.preempts_all && !command_->host.options().preempt_when_busy;
   result.preempt = [weak = weak_from_this()](const Error & why) {
@@ -262,6 +271,10 @@ Outcome CommandGoal::execute()
   const Generation begin = robot().generation();
   Outcome outcome = guarded(stop_request(), [&]() -> Outcome {
     if (command_->only_stops()) {
+      if (command_->host.wait_for_startup_requests()) {
+        wait_for_effects(robot());
+        begin_stop();  // of what the request has started since the first one
+      }
       return run_command(make_context());
     }
     if (auto why = stop_request().reason()) {

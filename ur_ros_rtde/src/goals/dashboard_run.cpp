@@ -21,6 +21,16 @@ constexpr std::string_view not_understood = "could not understand";
 constexpr std::chrono::milliseconds polling_interval{50};
 constexpr std::chrono::milliseconds answer_timeout{5000};
 constexpr std::chrono::milliseconds confirmed_state_timeout{1000};
+constexpr std::chrono::hours longest_wait{24 * 365};
+
+/// `timeout` in s.
+std::chrono::milliseconds to_duration(double timeout)
+{
+  if (!(timeout > 0.0)) {  // also NaN
+    return {};
+  }
+  return std::chrono::ceil<std::chrono::milliseconds>(std::min(Seconds(timeout), Seconds(longest_wait)));
+}
 
 bool begins_with(std::string_view text, std::string_view beginning)
 {
@@ -115,8 +125,7 @@ Outcome DashboardRun::query(const std::string & question)
 
 Outcome DashboardRun::raw(const std::string & line, double timeout)
 {
-  const auto answer = connection_.request(
-      line, std::chrono::ceil<std::chrono::milliseconds>(Seconds(timeout)), stop_request_->token());
+  const auto answer = connection_.request(line, to_duration(timeout), stop_request_->token());
   if (!answer) {
     if (auto why = stop_reason()) {
       return *why;
@@ -131,8 +140,12 @@ Outcome DashboardRun::raw(const std::string & line, double timeout)
 Outcome DashboardRun::command(const std::string & line, const std::string & reply,
                               const ExpectedState & expected, double timeout)
 {
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(timeout));
-  if (Outcome answered = raw(line, timeout); !answered) {
+  const auto deadline = Clock::now() + to_duration(timeout);
+  Outcome answered = raw(line, timeout);
+  if (!expected.is_awaited_by_stops) {
+    startup_request_.reset();
+  }
+  if (!answered) {
     return answered;
   }
   if (!begins_with(answer_, reply)) {
@@ -202,7 +215,8 @@ std::optional<StopReason> DashboardRun::sleep_for(std::chrono::nanoseconds durat
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  wake.wait_for(lock, stop_request_->token(), duration, [] { return false; });
+  wake.wait_for(lock, stop_request_->token(), std::min<std::chrono::nanoseconds>(duration, longest_wait),
+                [] { return false; });
   return stop_reason();
 }
 

@@ -64,11 +64,26 @@ std::shared_ptr<void> CommandHost::begin_startup_request(std::uint32_t stops)
   return startup_requests_.begin([&] { return stops_ == stops; });
 }
 
-void CommandHost::wait_for_startup_requests()
+bool CommandHost::wait_for_startup_requests()
 {
-  if (!startup_requests_.wait_until_none(startup_request_timeout)) {
-    RCL_CXX_WARN(node().get_logger(), "a request that powers the arm on is still under way: check the arm");
+  if (!startup_requests_.are_under_way()) {
+    return false;
   }
+  if (!startup_requests_.wait_until_none(startup_request_timeout)) {
+    RCL_CXX_WARN(node().get_logger(),
+                 "a request that brings the arm into operation is still under way: check the arm");
+  }
+  return true;
+}
+
+Expected<std::shared_ptr<void>> DashboardHost::begin_startup_request(std::uint32_t stops) const
+{
+  if (commands_ == nullptr) {
+    return nullptr;
+  }
+  auto request = commands_->begin_startup_request(stops);
+  return request ? Expected<std::shared_ptr<void>>(std::move(request))
+                 : tl::unexpected(stopped_by_the_driver());
 }
 
 void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)

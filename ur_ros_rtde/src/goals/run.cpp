@@ -41,7 +41,9 @@ Locked<ur_rtde::RTDEControlInterface> Run::control()
 {
   mark_ = robot().mark_motion();
   last_call_ = Clock::now();
-  return context_.lease != nullptr ? context_.robot.control(*context_.lease) : control_for_queries();
+  const auto control =
+      context_.lease != nullptr ? context_.robot.control(*context_.lease) : control_for_queries();
+  return patience_.count() > 0 ? control.before_others(patience_) : control;
 }
 
 Expected<StopReport> Run::wait_for_stop()

@@ -12,6 +12,12 @@ std::shared_ptr<void> StartupRequests::begin(const std::function<bool()> & may_b
   return {this, [](StartupRequests * requests) { requests->end(); }};
 }
 
+bool StartupRequests::are_under_way() const
+{
+  const std::lock_guard lock(mutex_);
+  return under_way_ > 0;
+}
+
 bool StartupRequests::wait_until_none(std::chrono::milliseconds timeout)
 {
   std::unique_lock lock(mutex_);

@@ -39,9 +39,16 @@ TargetStream::TargetStream(Run & run, TargetFollower & follower, const StreamOpt
       follower_(follower),
       options_(options),
       cycle_(run.robot().cycle_time()),
+      patience_(run.exchange_patience(
+          std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(options.timeout)))),
       sample_(run.state())
 {
   follower_.begin(sample_, cycle_, run.robot().limits());
+}
+
+TargetStream::~TargetStream()
+{
+  run_.exchange_patience(patience_);
 }
 
 std::optional<StopReason> TargetStream::wait()

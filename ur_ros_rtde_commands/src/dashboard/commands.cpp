@@ -9,17 +9,30 @@ class StoppingCommand : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::
   bool stops_program() const override { return true; }
 };
 
+/// Brings the arm into operation, or moves it.
+class StartingCommand : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
+ public:
+  using SimpleDashboardCommand::SimpleDashboardCommand;
+  bool starts_arm() const override { return true; }
+};
+
 // Arm power
-EXPORT_DASHBOARD_COMMAND(PowerOn, "dashboard/power_on", DashboardCommand,
-                         {"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}})
+class PowerOn : public StartingCommand {
+ public:
+  PowerOn() : StartingCommand({"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}}) {}
+};
+UR_ROS_RTDE_EXPORT(PowerOn, "dashboard/power_on")
 class PowerOff : public StoppingCommand {
  public:
   PowerOff() : StoppingCommand({"power off", "Powering off", {"robotmode", {"POWER_OFF"}}}) {}
   bool powers_off() const override { return true; }
 };
 UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
-EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardCommand,
-                         {"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}})
+class BrakeRelease : public StartingCommand {
+ public:
+  BrakeRelease() : StartingCommand({"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}}) {}
+};
+UR_ROS_RTDE_EXPORT(BrakeRelease, "dashboard/brake_release")
 class Shutdown : public StoppingCommand {
  public:
   Shutdown() : StoppingCommand({"shutdown", "Shutting down"}) {}
@@ -28,8 +41,15 @@ class Shutdown : public StoppingCommand {
 UR_ROS_RTDE_EXPORT(Shutdown, "dashboard/shutdown")
 
 // Program
-EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
-                         {"play", "Starting program", {"programState", {"PLAYING"}}})
+class Play : public StartingCommand {
+ public:
+  Play() : StartingCommand({"play", "Starting program", playing}) {}
+
+ private:
+  static inline const ExpectedState playing{
+      .query = "programState", .states = {"PLAYING"}, .is_awaited_by_stops = true};
+};
+UR_ROS_RTDE_EXPORT(Play, "dashboard/play")
 class Pause : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
  public:
   Pause() : SimpleDashboardCommand({"pause", "Pausing program", {"programState", {"PAUSED"}}}) {}

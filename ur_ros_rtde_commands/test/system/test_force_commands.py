@@ -162,6 +162,8 @@ def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action
     wait_for(lambda: modes and modes[-1].names == [stop.removesuffix("_stop").removeprefix("end_")], 10.0, "the mode on active_modes")
     rejected = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1))
     assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
+    rejected = robot.send(Trigger, "force_mode_stop")  # it would decelerate the arm in the hands of the operator
+    assert not rejected.accepted and robot.rejection(rejected).error_code == ErrorCode.BUSY
     robot.send(Trigger, stop).succeeded()
     assert not simulator.state()["freedrive"]
     wait_for(lambda: not modes[-1].names, 10.0, "its end on active_modes")

@@ -10,7 +10,7 @@ from action_msgs.msg import GoalStatus
 from arm_state import home_plus, wait_until_moving
 from support import HOME, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Trigger
+from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 RECOVERY_TIME_FACTOR = 1.0  # real durations
@@ -200,6 +200,18 @@ class HoldsMakeReady(PassesOn):
         until.wait(timeout)
 
 
+class HoldsPlay(PassesOn):
+    """Holds `play` until the client has sent a stop."""
+
+    holding, stopped = threading.Event(), threading.Event()
+
+    def answer(self, line):
+        if line.strip() == b"play":
+            self.holding.set()
+            self.stopped.wait(10.0)
+        return super().answer(line)
+
+
 class DashboardProxy(socketserver.ThreadingTCPServer):
     allow_reuse_address = True
     daemon_threads = True
@@ -275,3 +287,29 @@ def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simu
     robot.send(DashboardCommand, "dashboard/play").succeeded()
     goal.succeeded()
     assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.5, abs=0.01)
+
+
+def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processes):
+    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), HoldsPlay) as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "restart_program:=false",
+                                      "plugins:=[move_j,stop,dashboard/stop,dashboard/play]", namespace="played"))
+        client = Client("played")
+        try:
+            robot_fixtures.make_ready(client)
+            client.send(DashboardCommand, "dashboard/stop").succeeded()
+            simulator.control("store_program", name="moves.urp", script=f"movej({home_plus(3.0)}, a=1, v=0.2)", load=True)
+            play = client.send(DashboardCommand, "dashboard/play")
+            assert HoldsPlay.holding.wait(10.0)
+            stop = client.send(Stop, "stop")
+            assert stop.accepted
+            HoldsPlay.stopped.set()
+            stop.succeeded()
+            assert simulator.is_at_rest() and simulator.state()["program"]["state"] == "STOPPED"
+            play.succeeded()
+            assert simulator.is_at_rest()
+        finally:
+            client.close()
+            driver.stop()
+            proxy.shutdown()

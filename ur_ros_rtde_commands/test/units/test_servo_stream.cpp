@@ -1,84 +1,25 @@
 // A stream of setpoints that has to brake without a stop along its path, and one that is late. Times are
-// those of the simulated robot, which is slow, so that delays of a busy host are short in its time.
-#include <gtest/gtest.h>
-
+// those of the simulated robot.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <thread>
-#include <ur_simulator/simulated_controller.hpp>
 
+#include "stream_fixture.hpp"
 #include "streaming/servo_stream.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
 
 namespace ur_ros_rtde::test {
 namespace {
 
-using namespace std::chrono_literals;
 using trajectory::Joints;
 using trajectory::Limits;
 using trajectory::Trajectory;
-
-constexpr double slowness = 5.0;
-
-/// The loopback address of this test.
-std::string address()
-{
-  const char * given = std::getenv("UR_TEST_ADDRESS");
-  return given != nullptr ? given : "127.14.3.8";
-}
-
-ur_simulator::SimulatorOptions simulator_options()
-{
-  ur_simulator::SimulatorOptions options;
-  options.address = address();
-  options.initial_joints = std::array<double, 6>{0.0, -1.57, 1.57, -1.57, -1.57, 0.0};
-  if (const char * factor = std::getenv("UR_TEST_REAL_TIME_FACTOR")) {
-    options.real_time_factor = std::strtod(factor, nullptr);
-  }
-  options.real_time_factor /= slowness;
-  return options;
-}
-
-RobotOptions robot_options()
-{
-  RobotOptions options;
-  options.address = address();
-  options.silence_limit = 2000ms;
-  options.watchdog_frequency = 1.0;
-  return options;
-}
-
-bool eventually(const std::function<bool()> & condition)
-{
-  const auto deadline = std::chrono::steady_clock::now() + 30s;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 /// A setpoint: s of the plan, and of the controller's clock.
 struct Step {
   double time, controller_time;
 };
 
-struct ServoStreamTest : testing::Test {
-  void SetUp() override
-  {
-    robot.start();
-    const Status ready = robot.wait_until_ready(30s);
-    ASSERT_TRUE(ready) << ready.error().message;
-    auto granted = robot.acquire({.resource = Resource::motion, .owner = "/test", .id = "1"});
-    ASSERT_TRUE(granted) << granted.error().message;
-    lease = std::move(*granted);
-    run.emplace(RunContext{robot, stop_request, &lease});
-  }
-
+struct ServoStreamTest : StreamFixture {
   static Limits limits(double velocity, double acceleration)
   {
     Limits result;
@@ -106,11 +47,6 @@ struct ServoStreamTest : testing::Test {
     return longest;
   }
 
-  ur_simulator::SimulatedController controller{simulator_options()};
-  Robot robot{robot_options()};
-  std::shared_ptr<StopRequest> stop_request = std::make_shared<StopRequest>();
-  Lease lease;
-  std::optional<ur_ros_rtde::Run> run;
   std::vector<Step> steps;
 };
 

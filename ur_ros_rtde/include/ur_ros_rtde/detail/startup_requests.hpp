@@ -15,13 +15,14 @@ class StartupRequests {
   /// The request is under way while the returned object exists, which must end before this one. Null if
   /// `may_begin` is false, which has to be so before wait_until_none() is called.
   std::shared_ptr<void> begin(const std::function<bool()> & may_begin);
+  bool are_under_way() const;
   /// False if a request is still under way after `timeout`.
   bool wait_until_none(std::chrono::milliseconds timeout);
 
  private:
   void end();
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable ended_;
   unsigned under_way_ = 0;
 };

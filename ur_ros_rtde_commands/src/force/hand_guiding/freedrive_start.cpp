@@ -3,7 +3,10 @@
 namespace ur_ros_rtde {
 
 class FreedriveStart : public Command<ur_ros_rtde_msgs::action::Freedrive> {
-  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
+  CommandTraits traits() const override
+  {
+    return {.leaves_mode_active = true, .switches_hand_guiding = true};
+  }
 
   void check(const Goal & goal, Check & check) const override { check_freedrive(goal, false, check); }
 

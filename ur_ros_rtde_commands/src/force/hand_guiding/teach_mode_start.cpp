@@ -5,7 +5,10 @@
 namespace ur_ros_rtde {
 
 class TeachModeStart : public Command<ur_ros_rtde_msgs::action::TeachMode> {
-  CommandTraits traits() const override { return {.leaves_mode_active = true}; }
+  CommandTraits traits() const override
+  {
+    return {.leaves_mode_active = true, .switches_hand_guiding = true};
+  }
 
   void check(const Goal & goal, Check & check) const override { check_end_of_mode(check, goal, false); }
 

@@ -19,7 +19,7 @@ class Page:
         self._client = client
         self.node = client.node
         self._reports = []
-        self._pressed = False
+        self._pressed, self._pressed_at = False, 0.0
         self._stopper = None
         self._clients = []
 
@@ -31,6 +31,8 @@ class Page:
         return self._clients[-1]
 
     def clear(self):
+        if self._pressed:  # a press that follows at once would belong to the same hold of the button
+            wait_for(lambda: time.monotonic() > self._pressed_at + stop.REPEAT_GAP, 2.0, "the button to count as released")
         self._reports, self._pressed = [], False
 
     def press(self) -> int:
@@ -38,7 +40,7 @@ class Page:
         if self._stopper is None:
             self._stopper = self._client.call_in_executor(lambda: stop.Stopper(self, self))
         wait_for(lambda: all(client.server_is_ready() for client in self._clients), 20.0, "the actions that STOP uses")
-        self._pressed = True
+        self._pressed, self._pressed_at = True, time.monotonic()
         when = time.time_ns()
         self._stopper.press(lambda outcome, text: self._reports.append((outcome, text)))
         return when

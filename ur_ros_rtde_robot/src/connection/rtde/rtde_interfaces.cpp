@@ -298,7 +298,7 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
     }
   }
   if (control && !works) {
-    control->disconnect();
+    disconnect(*control);
   }
   return works;
 }
@@ -311,12 +311,17 @@ void RtdeInterfaces::close_control()
     control = control_ ? activate(nullptr) : pending_;
     pending_.reset();
   }
-  // The robot gives each input register to one client: this connection must be closed before the next one is
-  // opened, even if another thread still holds the interface.
   if (control) {
-    if (const HeldLock lock = take_control_lock(*control, close_timeout)) {
-      control->disconnect();
-    }
+    disconnect(*control);
+  }
+}
+
+/// The robot gives each input register to one client: this connection must be closed before the next one is
+/// opened. If another thread keeps the interface, it is closed when that thread lets it go.
+void RtdeInterfaces::disconnect(RTDEControlInterface & control) const
+{
+  if (const HeldLock lock = take_control_lock(control, close_timeout)) {
+    control.disconnect();
   }
 }
 

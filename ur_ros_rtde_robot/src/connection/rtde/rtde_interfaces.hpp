@@ -67,7 +67,7 @@ class RtdeInterfaces {
   /// Whether there is a pending connection.
   bool has_pending_control() const;
   /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
-  /// robot accepts another control interface.
+  /// robot accepts another control interface, unless a thread has kept this one for a second.
   void close_control();
   /// Closes the control and the IO interface.
   void close();
@@ -94,6 +94,7 @@ class RtdeInterfaces {
   double watchdog_frequency() const { return watchdog_frequency_; }
 
  private:
+  void disconnect(ur_rtde::RTDEControlInterface & control) const;
   Status probe_control_ports() const;
   /// Converts the exception of an interface's constructor; `what` begins the message.
   Error connection_error(std::string_view what, const std::exception & error) const;

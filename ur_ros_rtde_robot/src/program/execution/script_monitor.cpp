@@ -305,8 +305,8 @@ bool ScriptMonitor::complete_if_it_must_stop()
   return complete_if_told(ScriptEnd::interrupted) || complete_if_late();
 }
 
-/// A safety stop pauses the program, too, and is told by its own bits. The program may have been paused before
-/// a sample has shown it running.
+/// A safety stop pauses the program, too, and is told by its own bits. The program may have been paused
+/// before a sample has shown it running.
 bool ScriptMonitor::is_paused(const Sample & sample)
 {
   const bool pauses =
