@@ -2,13 +2,15 @@
 
 import errno
 import os
+import re
 import subprocess
 import sys
 from collections import namedtuple
 
 import pytest
-from ur_tools import build, build_times, console, disk, lock, main, system_packages, venv
+from ur_tools import build, build_times, console, demo, disk, lock, main, system_packages, venv
 from ur_tools.layout import Layout
+from ur_tools.packages import with_dependencies
 
 Usage = namedtuple("Usage", "total used free")
 
@@ -69,8 +71,8 @@ def test_the_remaining_time_follows_the_measured_speed(times):
 def test_the_total_number_of_files_is_an_estimate_until_all_packages_have_started(times):
     forecast = build_times.Forecast(times, {"messages": True, "driver": True}, False, Clock())
     forecast.step("messages", 30, 400)
-    assert forecast.files() == (30, 400 + 100, False)
-    assert "30 of about 500 files" in forecast.text()
+    assert forecast.files() == (30, 400 + 130, False)
+    assert "30 of about 530 files" in forecast.text()
     forecast.step("driver", 0, 50)
     assert forecast.files() == (30, 450, True)
     assert "30 of 450 files" in forecast.text()
@@ -117,8 +119,28 @@ def test_the_first_run_reports_downloads_packages_and_duration(layout):
     pending = build.Pending([], True, True, names, False)
     text = pending.text(build.Options(layout, jobs=2))
     megabytes = venv.MEGABYTES + 4
-    minutes = build_times.rounded(venv.SECONDS + sum(first for first, _ in build_times.REFERENCE.values()))
+    seconds = venv.SECONDS + sum(first for first, _ in build_times.REFERENCE.values())
+    minutes = build_times.span(seconds, build_times.SLOW_HOST * seconds)
     assert text == f"First run: downloads about {megabytes} MB, builds {len(names)} packages, about {minutes} on 2 cores"
+
+
+@pytest.mark.parametrize("names, tests, measured", [(demo.packages(demo.parse([])), False, 11), (None, True, 13), (None, True, 22)])
+def test_the_first_estimate_includes_measured_builds(layout, names, tests, measured):
+    """On two cores without a compiler cache, of different hosts."""
+    packages = build.discover_with_interfaces()
+    outdated = list(packages if names is None else with_dependencies(packages, names))
+    text = build.Pending([], True, True, outdated, tests).text(build.Options(layout, jobs=2))
+    least, most = map(int, re.search(r"about (\d+) min to (\d+) min on 2 cores", text).groups())
+    assert least <= measured <= most, text
+
+
+def test_the_estimate_is_one_duration_once_it_was_measured(layout):
+    layout.venv.mkdir(parents=True)
+    options = build.Options(layout, jobs=2)
+    times = build._times(options)
+    times.record("rcl_cxx", True, 90.0, 40, is_first=True)
+    times.write()
+    assert build.Pending([], False, False, ["rcl_cxx"], True).text(options) == "Builds 1 package, about 2 min on 2 cores"
 
 
 def test_a_rebuild_reports_the_maximum_and_the_last_duration(layout):
@@ -179,7 +201,7 @@ def test_the_progress_line_shows_packages_files_and_the_remaining_time(layout, t
     progress = build.Progress(layout, output, stamps, forecast, False)
     progress.update()
     progress.update()
-    assert shown[-1] == "22 of about 493 files, about 5 min left: messages 22/393, driver configuring"
+    assert shown[-1] == "22 of about 523 files, about 5 min left: messages 22/393, driver configuring"
     output.write_text("Starting >>> messages\nStarting >>> driver\nFinished <<< messages [3s]\nFailed   <<< driver [1s]\n")
     progress.end()
     assert stamps.written == [("messages", False)] and progress.done == {"messages"} and progress.failed == ["driver"]

@@ -1,11 +1,14 @@
 """Links and commands on the pages are valid. The tests of ur_ros_rtde_tutorials run the examples of the README."""
 
+import importlib
+import itertools
 import re
 import shlex
 import subprocess
 
-from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, COMMANDS
+from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, COMMANDS, VIEW, _parse_arguments
 from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
+from ur_ros_rtde_viewer import program as program_of_viewer
 from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
 from ur_tools.layout import ROOT, Layout
@@ -60,11 +63,35 @@ def test_every_command_of_ur_is_known():
     assert not unknown
 
 
-def test_the_options_of_the_contributors_commands_are_known():
-    lines = re.findall(r"^\./ur (.*?)(?: *#.*)?$", CONTRIBUTING, re.M)
-    assert len(lines) >= 8
-    for line in lines:
-        main._parse(line.split())  # exits with an unknown one
+def command_lines():
+    """Yields page and words of each command line of `ur` and `./ur` in a code block."""
+    for page, text in PAGES.items():
+        for block in re.findall(r"```\w*\n(.*?)```", text, re.S):
+            for line in re.findall(r'^ *((?:\./)?ur [a-z](?:"[^"]*"|[^"\n])*)', block.replace("\\\n", " "), re.M):
+                words = shlex.split(line, comments=True)
+                yield page.relative_to(ROOT), list(itertools.takewhile(lambda word: word not in (">", "|", "||", "&", "&&"), words))
+
+
+def parse(command, *arguments):
+    """Exits with wrong arguments, as the program does."""
+    if command == VIEW:
+        program_of_viewer.parse(arguments)
+    elif command in COMMANDS and (command, arguments) != ("doctor", ()):
+        _parse_arguments(command, arguments)
+    else:
+        options = main._parse([command, *arguments])
+        if options.function is main.command_module:
+            importlib.import_module(f"ur_tools.{command.replace('-', '_')}").parse(main._forwarded(options))
+
+
+def test_the_arguments_of_every_command_line_of_ur_are_known(capsys):
+    lines, wrong = list(command_lines()), []
+    for page, words in lines:
+        try:
+            parse(*words[1:])
+        except SystemExit:
+            wrong.append(f"{page}: {shlex.join(words)}")
+    assert len(lines) > 100 and not wrong, "\n".join([*wrong, capsys.readouterr().err])
 
 
 def test_the_names_in_the_examples_of_ur_test_select_tests():

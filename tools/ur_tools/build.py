@@ -246,9 +246,7 @@ class Pending:
 
     def text(self, options: Options) -> str:
         """Returns one line: downloads, packages to build, duration."""
-        times, first = _times(options), _firsts(options.layout, self.outdated)
         megabytes = self.venv * venv.MEGABYTES + self.archive * downloads.MEGABYTES
-        seconds = self.venv * venv.SECONDS + sum(times.first(name, self.tests)[0] for name in self.outdated)
         parts = []
         if self.system:
             parts.append(f"installs {len(self.system)} system packages")
@@ -256,15 +254,23 @@ class Pending:
             parts.append(f"downloads about {megabytes} MB")
         if self.outdated:
             parts.append(f"builds {len(self.outdated)} package{'s' * (len(self.outdated) > 1)}")
+        start = "First run: " if not options.layout.venv.exists() else ""
+        text = f"{', '.join(parts)}, {self._duration(options)}"
+        return start + (text if start else text[0].upper() + text[1:])
+
+    def _duration(self, options: Options) -> str:
+        times, first = _times(options), _firsts(options.layout, self.outdated)
+        estimates = [times.first(name, self.tests) for name in self.outdated]
+        seconds = self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
+        most = seconds if all(steps for _, steps in estimates) else build_times.SLOW_HOST * seconds
         again = [name for name, is_first in first.items() if not is_first]
-        cores = f" on {options.jobs} core{'s' * (options.jobs > 1)}" if self.outdated else ""
-        duration = f"{'at most' if again else 'about'} {build_times.rounded(seconds)}{cores}"
+        duration = f"at most {build_times.rounded(most)}" if again else f"about {build_times.span(seconds, most)}"
+        if self.outdated:
+            duration += f" on {options.jobs} core{'s' * (options.jobs > 1)}"
         last = [times.last(name, self.tests) for name in again]
         if last and len(last) == len(first) and all(last):
             duration += f" (last time {build_times.rounded(sum(entry[0] for entry in last if entry))})"
-        start = "First run: " if not options.layout.venv.exists() else ""
-        text = f"{', '.join(parts)}, {duration}"
-        return start + (text if start else text[0].upper() + text[1:])
+        return duration
 
 
 def _pending_setup(layout: Layout) -> Pending:

@@ -20,6 +20,7 @@ EXPECTED_SKIPS = (
     "this middleware sends the text before the null character",
     "this user may not create network namespaces and TUN devices",
     "up to Jazzy, the middleware requires them",
+    "zsh is not installed",
 )
 SHOWN_NAMES = 3  # of the tests that are skipped for one reason
 

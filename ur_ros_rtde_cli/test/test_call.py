@@ -59,11 +59,6 @@ def test_suggests_similar_names(running):
     assert error.startswith("no server of /movej; did you mean move_j "), output
 
 
-def test_names_the_namespaces_that_have_the_action(running):
-    code, output = ur("call", "move_j", "{joint_positions: [0, 0, 0, 0, 0, 0]}", "--namespace", "nope", "--wait", DISCOVERY)
-    assert code == 2 and "no server of /nope/move_j, but of this action in /: give --namespace" in output, output
-
-
 def test_lists_the_available_actions_if_no_name_is_similar(running):
     code, output = ur("call", "qqq", "--wait", DISCOVERY)
     assert code == 2 and "/move_l" in output and "/dashboard/power_on" in output, output

@@ -5,15 +5,16 @@ import os
 import re
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
-from support import Process, find_program
-from ur_program import EMPTY_DOMAIN, output_on_terminal, ur
+from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
 from ur_ros_rtde_cli import print_state, view
 from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
+from ur_ros_rtde_cli.namespaces import other_drivers
 
 
 def test_shows_the_version():
@@ -44,8 +45,31 @@ def test_the_state_names_fake_joint_positions():
 
 
 def test_a_missing_driver_is_reported_after_the_wait():
-    process = Process([find_program("ur_ros_rtde_cli", "ur"), "state", "--wait", "0.5", "--namespace", "nobody"])
-    assert process.wait(20.0) == 1 and "Does robot_state_receiver run" in process.output()
+    code, output = ur("state", "--wait", "0.5", domain=EMPTY_DOMAIN)
+    assert code == 1 and "no joint_states within 0.5 s. Does robot_state_receiver run" in output, output
+
+
+@pytest.mark.parametrize("arguments, status, missing", [
+    (["call", "move_j", "--wait", DISCOVERY], 2, "no server of /nope/move_j"),
+    (["state", "--wait", DISCOVERY], 1, f"no joint_states within {float(DISCOVERY):g} s"),
+    (["record", "run.csv"], 1, "there is no service start_recording"),
+    (["doctor", "--report", "report.md", "--yes"], 0, "no node of the driver was found with this namespace and ROS_DOMAIN_ID"),
+], ids=lambda value: value[0] if isinstance(value, list) else "")
+def test_a_wrong_namespace_is_answered_with_the_existing_ones(running, tmp_path, monkeypatch, arguments, status, missing):
+    monkeypatch.chdir(tmp_path)
+    code, output = ur(*arguments, "--namespace", "nope")
+    assert code == status and f"{missing}, but there is a driver in /: give --namespace" in output, output
+
+
+@pytest.mark.parametrize("nodes, text", [
+    ([], ""),
+    ([("command_server", "/nope"), ("command_server", "/left")], ""),
+    ([("command_server", "/right"), ("dashboard_server", "/right"), ("command_server", "/left"), ("ur_viewer", "/")],
+     ", but there is a driver in /left and /right: give --namespace"),
+])
+def test_finds_the_namespaces_of_drivers(nodes, text):
+    node = SimpleNamespace(get_namespace=lambda: "/nope", get_node_names_and_namespaces=lambda: nodes)
+    assert other_drivers(node) == text
 
 
 def test_lists_plugins_with_package_and_description():

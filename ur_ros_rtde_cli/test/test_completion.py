@@ -1,6 +1,8 @@
-"""Completion of command lines, as bash asks for it."""
+"""Completion of command lines: what the program answers, and what bash and zsh make of it."""
 
 import os
+import pty
+import shutil
 import subprocess
 
 import pytest
@@ -56,7 +58,45 @@ echo "${COMPREPLY[@]}"
 """
 
 
-def test_bash_completes_a_command_line():
-    env = {**os.environ, "PATH": os.path.dirname(find_program("ur_ros_rtde_cli", "ur")) + os.pathsep + os.environ["PATH"]}
-    result = subprocess.run(["bash", "-c", PRESS_TAB], env=env, capture_output=True, text=True)
+@pytest.fixture
+def environment():
+    programs = os.path.dirname(find_program("ur_ros_rtde_cli", "ur"))
+    return {**os.environ, "PATH": programs + os.pathsep + os.environ["PATH"], "TERM": "dumb"}
+
+
+def test_bash_completes_a_command_line(environment):
+    result = subprocess.run(["bash", "-c", PRESS_TAB], env=environment, capture_output=True, text=True)
     assert result.stdout.split() == ["insert_peg"], result.stdout + result.stderr
+
+
+# Completes LINE in the line editor of zsh, as Tab does.
+ZSHRC = r"""
+eval "$(ur completion zsh)"
+zle-line-init() {
+  BUFFER=$LINE CURSOR=$#LINE
+  zle complete-word
+  print -r -- "$BUFFER" > "$RESULT"
+  exit
+}
+zle -N zle-line-init
+"""
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
+@pytest.mark.parametrize("line, expected", [
+    ("ur state --wat", "ur state --watch "),
+    ("ur call insert_p", "ur call insert_peg "),
+    ("ur call move_j '", f"ur call move_j '{DEFAULTS}"),
+    ("ur call move_j '{j", "ur call move_j '{joint_positions: "),
+    ('ur call move_j "{joint_positions: [0, 0, 0, 0, 0, 0], s', 'ur call move_j "{joint_positions: [0, 0, 0, 0, 0, 0], speed: '),
+    ("ur call move_j '{speed: ", "ur call move_j '{speed: 0.5"),
+])
+def test_zsh_completes_a_command_line(tmp_path, environment, line, expected):
+    (tmp_path / ".zshrc").write_text(ZSHRC)
+    result = tmp_path / "result"
+    terminal, end = pty.openpty()
+    environment.update(ZDOTDIR=str(tmp_path), LINE=line, RESULT=str(result))
+    subprocess.run(["zsh", "-d", "-i"], stdin=end, stdout=end, stderr=end, env=environment, start_new_session=True, timeout=60)
+    os.close(end)
+    os.close(terminal)
+    assert result.read_text().removesuffix("\n") == expected

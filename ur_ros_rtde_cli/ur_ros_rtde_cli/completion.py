@@ -14,7 +14,16 @@ from .errors import CliError
 
 SHELLS = ("bash", "zsh")
 PROGRAMS = ("ur", "./ur")
-FOR_ZSH = "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n"
+BASH_COMPLETION_IN_ZSH = "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n"
+# Calls argcomplete in the program. Not argcomplete's own code: that for zsh loses the quote that opens a goal, in some versions (3.1.4)
+# also all after a colon, and some versions (1.8) have none that can be called.
+CODE = """\
+_ur_complete() {
+  local IFS=$'\\013'
+  COMPREPLY=($(COMP_LINE="$COMP_LINE" COMP_POINT="$COMP_POINT" COMP_TYPE="$COMP_TYPE" _ARGCOMPLETE=1 \\
+               _ARGCOMPLETE_COMP_WORDBREAKS="$COMP_WORDBREAKS" "$1" 8>&1 9>/dev/null 1>/dev/null 2>&1))
+}
+complete -o nospace -o default -o bashdefault -F _ur_complete """ + " ".join(PROGRAMS)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    code = _argcomplete().shellcode(list(PROGRAMS))
-    print((FOR_ZSH if options.shell == "zsh" else "") + code)
+    _argcomplete()  # raises an error now if it is missing: the shell would show none
+    print((BASH_COMPLETION_IN_ZSH if options.shell == "zsh" else "") + CODE)
     return 0
 
 

@@ -17,6 +17,7 @@ from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, RobotMode, SafetyMode
 
 from .errors import OperationFailed
 from .interruptions import Interrupted
+from .namespaces import other_drivers
 from .session import Session
 
 LINE_PERIOD = 1.0  # s, without a terminal
@@ -71,8 +72,8 @@ def state_lines(latest: Dict[str, Any]) -> Iterator[str]:
 def print_state(session: Session, options: argparse.Namespace) -> int:
     latest = subscribe(session)
     if not session.wait(lambda: "joint_states" in latest, options.wait):
-        raise OperationFailed(f"no joint_states within {options.wait:g} s. Does robot_state_receiver run with this ROS_DOMAIN_ID? Is "
-                              "the robot on?")
+        reason = other_drivers(session.node) or ". Does robot_state_receiver run with this ROS_DOMAIN_ID? Is the robot on?"
+        raise OperationFailed(f"no joint_states within {options.wait:g} s{reason}")
     session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
     if options.watch and sys.stdout.isatty():
         _watch_on_screen(session, latest)

@@ -10,6 +10,7 @@ from typing import Any
 
 from .errors import OperationFailed
 from .interruptions import Interrupted
+from .namespaces import other_drivers
 
 RESPONSE_TIMEOUT = 10.0  # s, of a service
 
@@ -25,7 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _call(session: Any, kind: Any, name: str, **request: Any) -> Any:
     client = session.node.create_client(kind, name)
     if not session.wait(client.service_is_ready, 5.0):
-        raise OperationFailed(f"the service {name} is not available. Does robot_state_receiver run with this ROS_DOMAIN_ID?")
+        reason = other_drivers(session.node) or ". Does robot_state_receiver run with this ROS_DOMAIN_ID?"
+        raise OperationFailed(f"there is no service {name}{reason}")
     response = session.result(client.call_async(kind.Request(**request)), RESPONSE_TIMEOUT)
     if response is None:
         raise OperationFailed(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")

@@ -11,9 +11,10 @@ import time
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
 from .errors import CliError, OperationFailed
+from .namespaces import NODES, other_drivers
 from .version import version_line
 
-NODES = ("driver", "robot_state_receiver", "command_server", "dashboard_server")  # and the programs with these names
+PROGRAMS = ("driver", *NODES)
 VARIABLES = ("ROS_", "RMW_", "FASTDDS_", "FASTRTPS_", "CYCLONEDDS_", "ZENOH_")
 LOG_LINES = 200
 DISCOVERY = 2.0  # s
@@ -93,9 +94,9 @@ def _parameters(session: Any, node: str) -> Optional[Dict[str, Any]]:
     return dict(zip(names, map(parameter_value_to_python, values.values))) if values else None
 
 
-def _node_lines(parameters: Dict[str, Optional[Dict[str, Any]]]) -> Iterator[str]:
+def _node_lines(session: Any, parameters: Dict[str, Optional[Dict[str, Any]]]) -> Iterator[str]:
     if not parameters:
-        yield "no node of the driver was found with this namespace and ROS_DOMAIN_ID"
+        yield f"no node of the driver was found with this namespace and ROS_DOMAIN_ID{other_drivers(session.node)}"
     for node, values in parameters.items():
         yield node
         yield from ["    no answer"] if values is None else [f"    {name}: {value}" for name, value in sorted(values.items())]
@@ -137,7 +138,7 @@ def _logs() -> Iterator[str]:
     """Yields the last lines of the newest log of each program of the driver."""
     folder = _log_folder()
     found = False
-    for program in NODES:
+    for program in PROGRAMS:
         logs = sorted(folder.glob(f"{program}_*.log"), key=lambda path: path.stat().st_mtime)
         if not logs:
             continue
@@ -161,7 +162,7 @@ def collect(session: Any, robot: str, say: Callable[[str], None]) -> str:
     say("reading the state and the diagnostics")
     state, diagnostics = _state(session), list(_diagnostics(session))
     say(f"checking {address}" if address else "no robot to check")
-    sections = (("Versions", _versions()), ("Environment", _environment()), ("Nodes and parameters", _node_lines(parameters)),
+    sections = (("Versions", _versions()), ("Environment", _environment()), ("Nodes and parameters", _node_lines(session, parameters)),
                 ("State", state), ("Diagnostics", diagnostics), ("Robot and network", _robot(address)), ("Log", _logs()))
     title = f"# Report of ur_ros_rtde, {time.strftime('%Y-%m-%d %H:%M UTC', time.gmtime())}\n"
     return without_private_data("\n".join((title, *(_section(*section) for section in sections))))

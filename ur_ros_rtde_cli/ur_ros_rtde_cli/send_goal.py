@@ -14,6 +14,7 @@ from .errors import CliError, OperationFailed
 from .feedback import write
 from .goal_output import JsonOutput, TextOutput
 from .interruptions import Interrupted
+from .namespaces import other_drivers
 from .session import GRAPH_POLL_PERIOD, Session
 
 CANCEL_TIMEOUT = 10.0  # s, to wait for the result of a canceled goal
@@ -24,10 +25,10 @@ def _read_goal(options: argparse.Namespace) -> fields.Document:
 
 
 def _server_not_found(session: Session, name: str, requested: str) -> CliError:
+    elsewhere = other_drivers(session.node)
+    if elsewhere:
+        return CliError(f"no server of {name}{elsewhere}")
     served = actions.served(session.node)
-    namespaces = sorted(full[:-len(requested)].rstrip("/") or "/" for full in served if full.endswith(f"/{requested}"))
-    if namespaces:
-        return CliError(f"no server of {name}, but of this action in {' and '.join(namespaces)}: give --namespace")
     hint = actions.suggestion(requested, {full.lstrip("/") for full in served} | set(actions.plugin_names()))
     if not served:
         return CliError(f"no server of {name}{hint or '.'} No action server was found. Does command_server run with "

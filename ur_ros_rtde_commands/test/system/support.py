@@ -381,9 +381,9 @@ def robot_seconds(stamp):
 
 
 @contextlib.contextmanager
-def simulated_robot(*parameters, env=None):
+def simulated_robot(*parameters, model="ur10e", env=None):
     """Yields a simulator whose driver, with these parameters, accepts motions."""
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"))
+    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"), model=model)
     driver = start_node("driver", simulator.address, *parameters, env=env)
     client = Client()
     try:
