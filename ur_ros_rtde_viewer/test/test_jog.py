@@ -1,13 +1,15 @@
 """Buttons that move the TCP while they are held, and STOP during a hold, without a browser."""
 
+import itertools
 from unittest.mock import MagicMock
 
 import pytest
-from ur_ros_rtde_viewer.control.jog import FIRST_GAP, HOLD_RATE, STOPPED, STREAM_TIMEOUT, Frame, Hold, Jog, JogSpeed, Meaning
+from ur_ros_rtde_viewer.control.jog import FIRST_GAP, HOLD_RATE, STOPPED, STREAM_TIMEOUT, TWO_BUTTONS, Frame, Hold, Jog, JogSpeed, Meaning
 
 BACKGROUND = True
 GAP = 1.2 * FIRST_GAP  # s
 PAUSE = 1.5 * STREAM_TIMEOUT  # s; shorter than FIRST_GAP
+X, Z = 0, 2  # axes
 START, MOVE, END = Meaning.START, Meaning.MOVE, Meaning.END
 
 
@@ -37,14 +39,17 @@ class JogWithTwists(Jog):
         super().__init__(MagicMock(), MagicMock(), lambda: self.now)
         self._publisher.get_subscription_count.return_value = 1
 
-    def hold_for(self, duration, *tabs):
-        """Each of `tabs` holds a button for `duration` s. Returns the speeds that are published, and the last reason of each tab."""
+    def hold_for(self, duration, *tabs, axes=(Z,)):
+        """Each of `tabs` holds a button of each of `axes` for `duration` s. Returns the speeds that are published, and the last reasons."""
         first, reasons = len(self.twists), {}
         for _ in range(round(duration * HOLD_RATE)):
             self.now += 1 / HOLD_RATE
-            for tab in tabs:
-                reasons[tab] = self.hold(tab, 2, 1.0, Frame.BASE, JogSpeed())
-        return self.twists[first:], [reasons[tab] for tab in tabs]
+            for button in itertools.product(tabs, axes):
+                reasons[button] = self.hold(*button, 1.0, Frame.BASE, JogSpeed())
+        return self.twists[first:], list(reasons.values())
+
+    def let_go(self, tab, axis=Z):
+        self.release(tab, axis, 1.0)
 
     def _publish(self, frame, axis, value):
         self.twists.append(value)
@@ -60,7 +65,7 @@ def jog():
 @pytest.mark.parametrize("gap", [0.0, PAUSE, GAP])
 def test_each_hold_begins_with_a_zero_twist(jog, gap):
     jog.now += gap
-    jog.release("tab")
+    jog.let_go("tab")
     first, *others = jog.hold_for(0.2, "tab")[0]
     assert first == 0.0 and others and all(others)
 
@@ -71,7 +76,7 @@ def test_a_pause_of_the_messages_ends_the_hold_until_the_button_is_released(jog,
     jog.now += gap
     for _ in range(3):
         assert jog.hold_for(0.5, "tab") == ([], [STOPPED])
-    jog.release("tab")
+    jog.let_go("tab")
     speeds, reasons = jog.hold_for(0.5, "tab")
     assert any(speeds) and reasons == [None]
 
@@ -86,16 +91,42 @@ def test_a_pause_that_is_shorter_than_the_timeout_of_the_driver_does_not_end_the
 
 def test_a_button_that_was_held_while_another_tab_moved_the_arm_moves_it_only_after_its_release(jog):
     assert jog.hold_for(0.2, "tab", "second")[1] == [None, "the arm is being moved from another tab"]
-    jog.release("tab")
+    jog.let_go("tab")
     assert jog.hold_for(0.5, "second") == ([], [STOPPED])
-    jog.release("second")
+    jog.let_go("second")
     assert any(jog.hold_for(0.5, "second")[0])
+
+
+@pytest.mark.parametrize("first_released", [X, Z])
+def test_a_second_finger_on_another_button_stops_the_arm_until_both_are_released(jog, first_released):
+    speeds, reasons = jog.hold_for(0.5, "tab", axes=(X, Z))
+    assert speeds == [0.0] and reasons == [TWO_BUTTONS, TWO_BUTTONS]
+    jog.let_go("tab", first_released)
+    other = X + Z - first_released
+    assert jog.hold_for(0.5, "tab", axes=(other,)) == ([], [STOPPED])
+    jog.let_go("tab", other)
+    speeds, reasons = jog.hold_for(0.5, "tab", axes=(X,))
+    assert any(speeds) and reasons == [None]
+
+
+def test_two_fingers_in_one_tab_do_not_stop_the_motion_of_another_tab(jog):
+    for _ in range(5):
+        speeds, reasons = jog.hold_for(1 / HOLD_RATE, "tab")
+        assert all(speeds) and reasons == [None]
+        for axis in (X, Z):
+            assert jog.hold("second", axis, 1.0, Frame.BASE, JogSpeed()) is not None
+
+
+def test_closing_a_tab_with_two_held_buttons_releases_both(jog):
+    jog.hold_for(0.1, "tab", axes=(X, Z))
+    jog.close("tab")
+    assert any(jog.hold_for(0.5, "tab", axes=(X,))[0])
 
 
 def test_a_tab_moves_the_arm_after_a_pause_in_the_hold_of_another_one(jog):
     jog.now += PAUSE
     assert any(jog.hold_for(0.5, "second")[0])
-    jog.release("second")
+    jog.let_go("second")
     assert jog.hold_for(0.5, "tab") == ([], [STOPPED])
 
 
@@ -112,7 +143,7 @@ def test_stop_holds_through_gaps_until_the_button_is_released(jog):
     for _ in range(3):
         assert jog.hold_for(0.5, "tab") == ([], [STOPPED])
         jog.now += GAP
-    jog.release("tab")
+    jog.let_go("tab")
     speeds, reasons = jog.hold_for(0.5, "tab")
     assert any(speeds) and reasons == [None]
 
@@ -128,7 +159,7 @@ def test_stop_ends_the_holds_of_all_tabs(jog):
     jog.stop()
     jog.now += GAP
     assert jog.hold_for(0.5, "tab", "second") == ([], [STOPPED, STOPPED])
-    jog.release("tab")
+    jog.let_go("tab")
     jog.now += GAP
     assert jog.hold_for(0.5, "second") == ([], [STOPPED])
     assert any(jog.hold_for(0.5, "tab")[0])
@@ -136,11 +167,11 @@ def test_stop_ends_the_holds_of_all_tabs(jog):
 
 def test_a_tab_that_is_closed_leaves_nothing_stopped(jog):
     jog.stop()
-    jog.release("tab")  # as its panel does
+    jog.close("tab")  # as its panel does
     assert any(jog.hold_for(0.5, "reloaded")[0])
 
 
 def test_a_button_that_is_pressed_after_stop_jogs(jog):
-    jog.release("tab")
+    jog.let_go("tab")
     jog.stop()
     assert any(jog.hold_for(0.5, "tab")[0])

@@ -13,7 +13,7 @@ from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses
 from ur_ros_rtde_description.urdf import make_urdf
-from ur_ros_rtde_viewer.control.jog import STOPPED
+from ur_ros_rtde_viewer.control.jog import STOPPED, TWO_BUTTONS
 from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT
 from ur_ros_rtde_viewer.control.target_panel import GIZMO_SCALE, TargetPanel
 from ur_ros_rtde_viewer.control.target_pose import Motion
@@ -290,10 +290,14 @@ def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, ro
     until(lambda: not is_moving(simulator), "the arm to stop")
 
 
+def middle_of(button):
+    box = button.bounding_box()
+    return {"x": box["x"] + 0.5 * box["width"], "y": box["y"] + 0.5 * box["height"]}
+
+
 def test_a_touch_that_the_browser_cancels_releases_the_button(tab, simulator):
     tab.open("Jog")
-    box = tab.button("Z +").bounding_box()
-    touch = {"x": box["x"] + 0.5 * box["width"], "y": box["y"] + 0.5 * box["height"]}
+    touch = middle_of(tab.button("Z +"))
     session = tab.page.context.new_cdp_session(tab.page)
     for _ in range(2):
         session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [touch]})
@@ -301,6 +305,43 @@ def test_a_touch_that_the_browser_cancels_releases_the_button(tab, simulator):
         session.send("Input.dispatchTouchEvent", {"type": "touchCancel", "touchPoints": []})
         until(lambda: not is_moving(simulator), "the arm to stop")
     session.detach()
+
+
+def test_a_second_finger_on_another_button_stops_the_arm_until_both_are_lifted(tab, simulator):
+    tab.open("Jog")
+    fingers = [{**middle_of(tab.button(name)), "id": number} for number, name in enumerate(("Z +", "X +"))]
+    session = tab.page.context.new_cdp_session(tab.page)
+    session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": fingers[:1]})
+    until(lambda: is_moving(simulator), "the arm to move")
+    session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": fingers})
+    tab.wait_for_text(TWO_BUTTONS)
+    until(lambda: not is_moving(simulator), "the arm to stop")
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": fingers[1:]})
+    until(lambda: is_moving(simulator), "the arm to move again")
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    until(lambda: not is_moving(simulator), "the arm to stop")
+    session.detach()
+
+
+@pytest.mark.parametrize("name", ["STOP", "Z +"])
+def test_a_finger_that_moves_on_a_button_does_not_scroll_the_page(tab, name):
+    tab.open("Jog")
+    assert tab.button(name).evaluate("button => getComputedStyle(button).touchAction") == "none"
+
+
+def test_the_speed_slider_is_set_with_the_keyboard_and_by_a_drag(tab, simulator):
+    tab.open("State")
+    thumb = tab.page.get_by_role("slider").locator("visible=true")
+    thumb.press("ArrowLeft")
+    until(lambda: simulator.state()["speed_slider"] == pytest.approx(0.99), "the speed of the keyboard")
+    begin = middle_of(thumb)
+    tab.drag((begin["x"], begin["y"]), (begin["x"] - 80.0, begin["y"]))
+    until(lambda: simulator.state()["speed_slider"] < 0.9, "the speed of the drag")
+    shown = float(tab.field("Speed slider [%]").last.input_value())
+    until(lambda: simulator.state()["speed_slider"] == pytest.approx(shown / 100), "the last value of the drag")
+    simulator.control("speed_slider", fraction=1.0)
+    until(lambda: tab.field("Speed slider [%]").last.input_value() == "100", "the slider to follow the robot")
 
 
 def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):

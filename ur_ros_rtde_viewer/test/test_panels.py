@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banner_text
+from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banners
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, signal_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
@@ -14,7 +14,10 @@ def moving(stamp=0.0, position=0.0):
 
 
 def banner(state, has_model=True, error=""):
-    return banner_text(state, "left", "/left/joint_states", has_model, error)
+    """Returns color and text of the only banner, None if there is none."""
+    found = banners(state, "left", "/left/joint_states", has_model, error)
+    assert len(found) <= 1
+    return found[0] if found else None
 
 
 def test_a_ready_robot_has_no_banner():
@@ -46,6 +49,17 @@ def test_a_stopped_driver_shows_its_message():
     state = moving()
     state.driver = DriverStatus("STOPPED", 10, "press play on the pendant")
     assert banner(state) == (AMBER, "left: press play on the pendant")
+
+
+def test_the_banner_of_the_digital_twin_is_shown_beside_every_other_one():
+    state = moving()
+    state.joint_states_are_fake = True
+    fake = (AMBER, "left: /left/joint_states has fake positions (digital twin). The blue ghost shows the robot.")
+    assert banner(state) == fake
+    state.driver = DriverStatus("STOPPED", 7, "call make_ready")
+    assert banners(state, "left", "/left/joint_states", True) == [(AMBER, "left: call make_ready"), fake]
+    state.safety_mode = "PROTECTIVE_STOP"
+    assert banners(state, "left", "/left/joint_states", True) == [(RED, "left: PROTECTIVE STOP: call make_ready"), fake]
 
 
 def test_an_active_mode_has_a_banner_and_a_row():
@@ -92,7 +106,7 @@ def test_the_state_names_modes_driver_and_goal():
 
 
 def test_the_state_panel_shows_progress_and_rejections_without_interpreting_them(server):
-    panel = StatePanel(server.gui.add_folder("state"), server.gui)
+    panel = StatePanel(server.gui.add_folder("state"), server.gui, lambda function: function())
     state = moving()
     state.goal = ActiveGoal("move_j", 0.25, 1.5)
     state.rejections.append(Rejection(0.0, "/move_l", "speed is <b>9</b>"))

@@ -12,6 +12,7 @@ from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, start_node
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
+from ur_ros_rtde_viewer.panels.state_panel import StatePanel
 from ur_ros_rtde_viewer.program import parse
 from ur_ros_rtde_viewer.ros.nodes import Nodes
 from ur_ros_rtde_viewer.viewer import Viewer
@@ -93,6 +94,22 @@ def test_follows_a_motion_with_its_goal_and_the_trail(viewer, robot, client):
     update_until(viewer, lambda: robot.state.goal is None, "the end of the goal")
 
 
+def test_the_speed_slider_follows_the_robot_and_sets_its_speed(viewer, robot, simulator):
+    slider = panel(robot, StatePanel).speed_slider
+    element = slider._element
+    assert not element.disabled
+    simulator.control("speed_slider", fraction=0.7)
+    update_until(viewer, lambda: element.visible and element.value == 70, "the position of the slider of the pendant")
+    element.value = 40
+    slider._changed()  # as after a change in the page
+    update_until(viewer, lambda: simulator.state()["speed_slider"] == pytest.approx(0.4), "the speed of the page")
+    update_until(viewer, lambda: not slider.is_held, "the end of the change")
+    assert element.value == 40 and slider.message.content == ""
+    for percent in (0, 100):
+        simulator.control("speed_slider", fraction=percent / 100)
+        update_until(viewer, lambda percent=percent: element.value == percent, "the slider to follow again")
+
+
 def test_shows_a_rejection(viewer, robot, client):
     assert not client.send(MoveJ, "move_j", joint_positions=[0.0, 1.0]).accepted
     update_until(viewer, lambda: robot.state.rejections, "the rejection")
@@ -102,11 +119,11 @@ def test_shows_a_rejection(viewer, robot, client):
 def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):
     simulator.control("protective_stop", reason="a test")
     banner = panel(robot, Banner)
-    update_until(viewer, lambda: banner.shown is not None and banner.shown[0] == RED, "the banner")
-    assert "PROTECTIVE STOP" in banner.shown[1] and banner._element.visible
+    update_until(viewer, lambda: [color for color, _ in banner.shown] == [RED], "the banner")
+    assert "PROTECTIVE STOP" in banner.shown[0][1] and banner._element.visible
     update_until(viewer, simulator.unlock_protective_stop, "the end of the unlock delay")
     simulator.control("power", to="running")
-    update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and (banner.shown is None or banner.shown[0] == AMBER),
+    update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and RED not in dict(banner.shown),
                  "the end of the red banner")
 
 
@@ -121,7 +138,7 @@ def test_the_digital_twin_moves_while_the_robot_stays(viewer, robot, simulator):
     twin.publish("tab", [real[0] - 0.7, *real[1:]])
     update_until(viewer, lambda: near(robot.scene.arm, [real[0] - 0.7, *real[1:]]), "the fake position")
     update_until(viewer, lambda: near(robot.scene.ghost, real), "the real position as the ghost")
-    assert "/joint_states has fake positions" in panel(robot, Banner).shown[1]
+    assert "/joint_states has fake positions" in panel(robot, Banner).shown[0][1]
     assert simulator.state()["actual"]["position"] == pytest.approx(real, abs=1e-3)
     twin.end("other tab")
     twin.end("tab")
@@ -156,7 +173,7 @@ def test_records_and_replays(viewer, robot):
 
 def test_a_second_robot_is_independent_and_has_a_prefix(viewer, client):
     right = viewer.robots[1]
-    assert panel(right, Banner).shown[0] == AMBER and right.scene.arm.positions != pytest.approx(np.zeros(6))
+    assert panel(right, Banner).shown[0][0] == AMBER and right.scene.arm.positions != pytest.approx(np.zeros(6))
     publisher = client.node.create_publisher(JointState, f"/{RIGHT}/joint_states", 10)
     positions = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
     message = JointState(name=[f"right_{joint}" for joint in reversed(JOINTS)], position=positions[::-1])
@@ -185,9 +202,9 @@ def test_posted_functions_run_in_the_loop_and_a_failing_one_is_logged(viewer, ca
 def test_a_restart_of_the_driver_is_shown_and_survived(viewer, robot, simulator, driver):
     driver.stop()
     banner = panel(robot, Banner)
-    update_until(viewer, lambda: banner.shown is not None and "no messages on /joint_states for" in banner.shown[1], "the banner")
+    update_until(viewer, lambda: banner.shown and "no messages on /joint_states for" in banner.shown[0][1], "the banner")
     restarted = start_node("driver", simulator.address)
     try:
-        update_until(viewer, lambda: robot.state.age < 0.5 and banner.shown is None, "the state of the restarted driver")
+        update_until(viewer, lambda: robot.state.age < 0.5 and not banner.shown, "the state of the restarted driver")
     finally:
         restarted.stop()

@@ -6,10 +6,12 @@ import time
 from typing import Any, Dict, List
 
 from ..page import style
+from ..panels.state_panel import StatePanel
 from .control_node import ControlNode
 from .form_panel import FormPanel
 from .jog_panel import JogPanel
 from .robot_control import RobotControl
+from .speed_control import SpeedControl
 from .stop import Outcome
 from .target_panel import TargetPanel
 from .twin_panel import TwinPanel
@@ -45,7 +47,8 @@ class Control:
         self._expanded = -float("inf")
         self._outcomes: Dict[str, str] = {}
         for robot in self._robots:
-            robot.view.panels.append(robot)
+            slider = next(panel.speed_slider for panel in robot.view.panels if isinstance(panel, StatePanel))
+            robot.view.panels += [robot, SpeedControl(slider, robot.goals)]
         self._node.start()
         self._add_stop(viewer.server.gui)
         viewer.server.on_client_connect(self._connect)

@@ -9,7 +9,7 @@ import threading
 import time
 from dataclasses import dataclass
 from enum import Enum
-from typing import Callable, Hashable, Optional, Set
+from typing import Callable, Hashable, NamedTuple, Optional, Set
 
 from geometry_msgs.msg import TwistStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -25,6 +25,7 @@ SHORTEST_GAP = 0.25 / HOLD_RATE  # s
 MAX_LINEAR, MAX_ANGULAR = 0.25, 1.0  # m/s, rad/s
 AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 STOPPED = "stopped: release the button, then hold it again"
+TWO_BUTTONS = "stopped: hold one button at a time; release both"
 
 
 class Frame(Enum):
@@ -83,12 +84,19 @@ class Hold:
         return Meaning.MOVE
 
 
-class Jog:
-    """Only one tab moves the arm at a time. Methods can be called in any thread.
+class _Button(NamedTuple):
+    tab: Hashable
+    axis: int
+    sign: float
 
-    A hold begins with the first message of a tab since its button was released. STOP and a pause of the messages end it until the button
-    is released or the tab is closed: during the pause, something else may have stopped the arm. A pause is not a release: a tab in the
-    background and a bad network cause pauses, too. The lock is held while a twist is published, so that none follows a STOP.
+
+class Jog:
+    """Only one tab moves the arm at a time, with one button. Methods can be called in any thread.
+
+    A hold begins with the first message of a button since it was released. STOP, another button of the tab (a second finger) and a pause
+    of the messages end it until the button is released or the tab is closed: during the pause, something else may have stopped the arm. A
+    pause is not a release: a tab in the background and a bad network cause pauses, too. The lock is held while a twist is published, so
+    that none follows a STOP.
     """
 
     def __init__(self, control: ControlNode, goals: Goals, clock: Callable[[], float] = time.monotonic):
@@ -97,8 +105,8 @@ class Jog:
         self._publisher = control.node.create_publisher(TwistStamped, goals.full_name("twist"), qos)
         self._lock = threading.Lock()
         self._hold = Hold(clock)
-        self._owner: Optional[Hashable] = None  # tab of the hold
-        self._held: Set[Hashable] = set()  # tabs that have not released their button
+        self._owner: Optional[_Button] = None  # of the hold
+        self._held: Set[_Button] = set()  # not released yet
 
     def set_stream_timeout(self, seconds: float) -> None:
         with self._lock:
@@ -106,18 +114,22 @@ class Jog:
 
     def hold(self, tab: Hashable, axis: int, sign: float, frame: Frame, speed: JogSpeed) -> Optional[str]:
         """Handles a message of a held button of `tab`. Returns why the arm does not move, or None."""
+        button = _Button(tab, axis, sign)
         with self._lock:
-            is_first = tab not in self._held
-            self._held.add(tab)
+            is_first = button not in self._held
+            self._held.add(button)
             if self._publisher.get_subscription_count() == 0:
                 self._end_hold()
                 return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
-            if self._owner != tab and self._hold.is_active:
+            if any(other.tab == tab and other != button for other in self._held):
+                self._end_hold_of(tab)
+                return TWO_BUTTONS
+            if self._owner != button and self._hold.is_active:
                 return "the arm is being moved from another tab"
             if is_first:
-                self._owner, meaning = tab, self._hold.begin()
+                self._owner, meaning = button, self._hold.begin()
             else:
-                meaning = self._hold.take() if self._owner == tab else Meaning.END
+                meaning = self._hold.take() if self._owner == button else Meaning.END
             if meaning is Meaning.END:
                 self._end_hold()
                 return STOPPED
@@ -127,20 +139,30 @@ class Jog:
                 self._publish(frame, axis, sign * (speed.linear if axis < 3 else speed.angular))
         return None
 
-    def release(self, tab: Hashable) -> None:
-        """Ends the hold of `tab` at once: the driver would notice it only after `stream_timeout`."""
+    def release(self, tab: Hashable, axis: int, sign: float) -> None:
+        """Ends the hold of the button."""
         with self._lock:
-            self._held.discard(tab)
-            if self._owner != tab:
-                return
-            if self._hold.is_active:
-                self._publish(Frame.BASE, 0, 0.0)
-            self._end_hold()
+            self._held.discard(_Button(tab, axis, sign))
+            self._end_hold_of(tab)
+
+    def close(self, tab: Hashable) -> None:
+        """Ends the holds of a tab."""
+        with self._lock:
+            self._held = {button for button in self._held if button.tab != tab}
+            self._end_hold_of(tab)
 
     def stop(self) -> None:
         """Ignores each button that is held until it is released."""
         with self._lock:
             self._end_hold()
+
+    def _end_hold_of(self, tab: Hashable) -> None:
+        """Stops the arm at once: the driver would notice the end of a hold only after `stream_timeout`."""
+        if self._owner is None or self._owner.tab != tab:
+            return
+        if self._hold.is_active:
+            self._publish(Frame.BASE, 0, 0.0)
+        self._end_hold()
 
     def _end_hold(self) -> None:
         self._hold.end()

@@ -41,10 +41,10 @@ class JogPanel:
                 self._text.content = text
 
         async def release(_event: Any) -> None:
-            self._jog.release(self._tab)
+            self._jog.release(self._tab, axis, sign)
 
         button.on_hold(hold, callback_hz=HOLD_RATE)
         button.on_click(release)
 
     def close(self) -> None:
-        self._jog.release(self._tab)
+        self._jog.close(self._tab)

@@ -24,7 +24,7 @@ PAGE = f"""<style>
 
 # The button after this element, and on a phone all elements of its panel.
 STOP = f"""<style>
-div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; font-weight: 700}}
+div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; font-weight: 700; touch-action: none}}
 {PHONE} {{
   div:has(> div > .stop-style) {{position: fixed; top: 0; left: 0; right: 0; height: {STOP_HEIGHT}; box-sizing: border-box;
                                  padding-top: 0.5em; background: var(--mantine-color-body)}}
@@ -37,7 +37,8 @@ div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; 
 }}
 </style><div class="stop-style"></div>"""
 
-# The buttons after this element.
+# The buttons after this element. A finger that moves on one of them neither scrolls nor zooms the page, which would end its touch.
 TWO_COLUMNS = """<style>
 div:has(> .two-columns) ~ div:has(> button) {display: inline-block; width: calc(50% - 2 * var(--mantine-spacing-xs))}
+div:has(> .two-columns) ~ div > button {touch-action: none; -webkit-touch-callout: none}
 </style><div class="two-columns"></div>"""

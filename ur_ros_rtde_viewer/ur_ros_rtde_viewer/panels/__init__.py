@@ -22,7 +22,7 @@ def add_panels(viewer: Any, robot: Any) -> None:
     replay = ReplayPanel(replay_tab, server.gui, _player(viewer, robot, replay_tab), post)
     robot.panels += [
         Banner(viewer.layout.banner(robot.options), robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
-        StatePanel(state_tab, server.gui),
+        StatePanel(state_tab, server.gui, post),
         PlotsPanel(viewer.layout.add_plots_tab(robot.options), server),
         replay]
     if viewer.options.control:

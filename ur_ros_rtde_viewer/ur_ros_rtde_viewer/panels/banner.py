@@ -1,15 +1,23 @@
-"""A banner above the tabs: what stops the robot, or why nothing is shown."""
+"""Banners above the tabs: what stops the robot, or why nothing is shown, and whether the positions are fake."""
 
 import html
-from typing import Any, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
 from ..state.robot_state import RobotState
 
 RED, AMBER = "#c62828", "#b26a00"
 
 
-def banner_text(state: RobotState, name: str, topic: str, has_model: bool, error: str = "") -> Optional[Tuple[str, str]]:
-    """Returns color and text, None if there is nothing to report. `error`: why the model cannot be shown."""
+def banners(state: RobotState, name: str, topic: str, has_model: bool, error: str = "") -> List[Tuple[str, str]]:
+    """Returns colors and texts. `error`: why the model cannot be shown."""
+    first = _most_important(state, name, topic, has_model, error)
+    found = [] if first is None else [first]
+    if state.joint_states_are_fake:  # also while the robot is stopped
+        found.append((AMBER, f"{name}: {topic} has fake positions (digital twin). The blue ghost shows the robot."))
+    return found
+
+
+def _most_important(state: RobotState, name: str, topic: str, has_model: bool, error: str) -> Optional[Tuple[str, str]]:
     if state.is_stopped:
         title = state.safety_mode.replace("_", " ")
         return RED, f"{name}: {title}: {state.driver.message if state.driver is not None else ''}"
@@ -18,8 +26,6 @@ def banner_text(state: RobotState, name: str, topic: str, has_model: bool, error
                        "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")
     if state.is_silent:
         return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
-    if state.joint_states_are_fake:
-        return AMBER, f"{name}: {topic} has fake positions (digital twin). The blue ghost shows the robot."
     if state.active_modes:
         return AMBER, f"{name}: {' and '.join(state.active_modes).replace('_', ' ')} active: forces move the arm. STOP ends it."
     if not has_model:
@@ -34,17 +40,16 @@ class Banner:
 
     def __init__(self, element: Any, name: str, topic: str, scene: Any):
         self._element, self._name, self._topic, self._scene = element, name, topic, scene
-        self.shown: Optional[Tuple[str, str]] = None
+        self.shown: List[Tuple[str, str]] = []
 
     def update(self, state: RobotState) -> None:
-        shown = banner_text(state, self._name, self._topic, self._scene.arm is not None, self._scene.error)
+        shown = banners(state, self._name, self._topic, self._scene.arm is not None, self._scene.error)
         if shown != self.shown:
             self.shown = shown
-            if shown is not None:
-                color, text = shown
-                self._element.content = (f"<div style='background:{color};color:white;font-weight:600;padding:10px 14px;"
-                                         f"border-radius:6px;margin:6px'>{html.escape(text)}</div>")
-            self._element.visible = shown is not None
+            self._element.content = "".join(
+                f"<div style='background:{color};color:white;font-weight:600;padding:10px 14px;border-radius:6px;margin:6px'>"
+                f"{html.escape(text)}</div>" for color, text in shown)
+            self._element.visible = bool(shown)
 
     def close(self) -> None:
         pass

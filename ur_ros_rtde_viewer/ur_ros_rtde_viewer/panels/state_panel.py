@@ -1,11 +1,12 @@
-"""Shows the state of robot and driver, the active goal, the arm, inputs and outputs in numbers, and rejections."""
+"""Shows the state of robot and driver, the speed slider, the active goal, the arm, inputs and outputs in numbers, and rejections."""
 
 import html
 import math
 import time
-from typing import Any, List, Sequence, Tuple
+from typing import Any, Callable, List, Sequence, Tuple
 
 from ..state.robot_state import RobotState
+from .speed_slider import SpeedSlider
 
 ARM_PERIOD = 0.2  # s; each browser receives every change
 TOOL_PIN = 16  # the first one of the tool
@@ -79,9 +80,12 @@ def _as_html(rows: List[Tuple[str, str]]) -> str:
 
 
 class StatePanel:
-    def __init__(self, tab: Any, gui: Any):
+    """`post` calls a function in the thread of the viewer's loop."""
+
+    def __init__(self, tab: Any, gui: Any, post: Callable[..., None]):
         with tab:
             self._table = gui.add_html("")
+            self.speed_slider = SpeedSlider(gui, post)
             self._progress = gui.add_progress_bar(0.0, visible=False)
             self._arm = gui.add_html("")
             self._rejections = gui.add_html("")
@@ -98,6 +102,7 @@ class StatePanel:
         if time.monotonic() - self._arm_shown > ARM_PERIOD:
             self._arm_shown = time.monotonic()
             self._arm.content = _as_html(arm_rows(state) + signal_rows(state))
+        self.speed_slider.update(state)
         self._progress.visible = state.goal is not None and state.goal.progress > 0.0
         if state.goal is not None:
             self._progress.value = round(100.0 * state.goal.progress)
