@@ -1,9 +1,14 @@
 """`./ur docs` builds the site without a warning. Its search finds what users look for, and its reference has everything."""
 
+import functools
+import json
 import re
+import subprocess
 
 import pytest
-from ur_tools import console, docs
+from error_texts import error_texts
+from ur_ros_rtde_launch.launch_arguments import PARAMETERS
+from ur_tools import console, docs, docs_commands, docs_reference
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
@@ -18,10 +23,46 @@ def text_of(page):
     return re.sub(r"<[^>]*>", "", page.read_text())
 
 
-@pytest.mark.parametrize("word", ["urcap", "on_busy", "protective_stop", "lookahead_time", "safeguard"])
-def test_the_search_finds(site, word):
-    terms = (site / "searchindex.js").read_text()
-    assert re.search(rf'"?{word[:-2]}\w*"?:', terms), f"{word} is not in the index"  # which has the stems of the words
+def stems(words):
+    """Returns the stems by which the search of Sphinx finds words. It ignores the others."""
+    code = ("import sys; from sphinx.search.en import SearchEnglish; language = SearchEnglish({}); "
+            "print(*(f'{word} {language.stem(word)}' for word in sys.argv[1:] if word not in language.stopwords), sep=chr(10))")
+    command = [str(docs.ensure_sphinx()), "-c", code, *sorted(word for word in words if len(word) > 2 and not word.isdigit())]
+    lines = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    return dict(line.split() for line in lines)
+
+
+def search(site, queries):
+    """Yields the names of the pages with all words of each query, as searchtools.js of Sphinx finds them."""
+    index = json.loads((site / "searchindex.js").read_text().removeprefix("Search.setIndex(").removesuffix(")"))
+    words = {query: set(re.findall(r"\w+", query.lower())) for query in queries}
+    stem_of = stems(set().union(*words.values()))
+
+    @functools.lru_cache(maxsize=None)
+    def pages(stem):
+        found = set()
+        for terms in (index["terms"], index["titleterms"]):
+            for term in [stem] if stem in terms else [term for term in terms if stem in term]:
+                found |= {terms[term]} if isinstance(terms[term], int) else set(terms[term])
+        return found
+
+    for query in queries:
+        numbers = set.intersection(*(pages(stem_of[word]) for word in words[query] if word in stem_of))
+        yield {index["docnames"][number] for number in numbers}
+
+
+@pytest.mark.parametrize("query, page", [
+    ("URCap", "docs/use/parameters"), ("on_busy", "docs/use/parameters"), ("on_busy", "reference/parameters"), ("cite", "index"),
+    ("safeguard", "docs/use/troubleshooting_motions"), ("lookahead_time", "reference/actions_motion"),
+    ("move_until_force NOT_REACHED", "reference/actions_until")])
+def test_the_search_finds(site, query, page):
+    assert page in next(search(site, [query]))
+
+
+def test_the_search_finds_every_text_of_an_error(site):
+    texts = sorted(text for code, found in error_texts().items() if code != "invalid_goal" for text in found)
+    pages = {"docs/use/troubleshooting", "docs/use/troubleshooting_motions"}
+    assert len(texts) > 150 and [text for text, found in zip(texts, search(site, texts)) if not found & pages] == []
 
 
 def test_a_number_of_an_error_is_an_entry_of_the_index(site):
@@ -32,16 +73,27 @@ def test_a_number_of_an_error_is_an_entry_of_the_index(site):
             assert f'"error {number[1]}":' in entries, line
 
 
-def test_the_reference_has_every_action(site):
-    for file in ROOT.glob("*/action/*.action"):
-        page = text_of(site / "reference" / f"actions_{file.parent.parent.name}.html")
-        assert f"{file.stem}¶" in page, f"{file.stem} is missing"
+def section(site, command):
+    """Returns the HTML of the reference of a command."""
+    found = [page.read_text().split(f'<section id="{command}">')[1:] for page in (site / "reference").glob("actions_*.html")]
+    (text,) = [text for texts in found for text in texts]
+    return text.split("<section ")[0]
 
 
-def test_fields_have_their_defaults_and_actions_their_examples(site):
-    page = (site / "reference" / "actions_ur_ros_rtde_msgs.html").read_text()
-    section = page[page.index('id="movej"'):page.index('id="movejik"')]
-    assert "docs/use/commands/motion.html#move-j" in section and re.search(r"speed.*float64.*0\.5.*Unit: rad/s", section, re.S)
+def test_the_reference_of_a_command_has_fields_error_codes_and_examples(site):
+    text = section(site, "move-j")
+    assert re.search(r"speed.*float64.*0\.5.*Unit: rad/s", text, re.S)
+    for link in ("docs/use/commands/motion.html#move-j", "messages.html#armstate", "error_codes.html#not-reached"):
+        assert link in text, link
+    for example in ("ur call move_j ", "arm.move_j(", "goal.speed = 0.5;"):
+        assert example in re.sub(r"<[^>]*>", "", text), example
+    assert "CUSTOM" in section(site, "jog")
+
+
+def test_the_reference_has_every_command(site):
+    text = "".join(text_of(page) for page in (site / "reference").glob("actions_*.html"))
+    pages = (ROOT / "docs" / "use" / "commands").glob("*.md")
+    assert [command.name for page in pages for command in docs_commands.of_page(page.read_text()) if f"{command.name}¶" not in text] == []
 
 
 def test_every_error_code_and_command_is_in_the_reference(site):
@@ -49,6 +101,53 @@ def test_every_error_code_and_command_is_in_the_reference(site):
     messages, commands = text_of(site / "reference" / "messages.html"), text_of(site / "reference" / "command_line.html")
     assert len(codes) > 20 and not [code for code in codes if code not in messages]
     assert "usage: ./ur test" in commands and "usage: ur call" in commands
+
+
+def rows(page, columns):
+    """Yields the cells of the rows that begin with a name, in the tables of a page of docs/use with so many columns."""
+    for line in (ROOT / "docs" / "use" / page).read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if line.startswith("| `") and len(cells) == columns:
+            yield cells
+
+
+def test_the_tables_of_topics_and_services_match_the_sources():
+    served = {name: kind.replace("/msg/", "/").replace("/srv/", "/") for name, kind, _ in docs_reference.endpoints()}
+    described = {}
+    for names, types, last in rows("interfaces.md", 3):
+        package, _, short = types.partition("/")
+        topics = re.findall(r"`(\w+)`", names) if short else []
+        described.update(zip(topics, [f"{package}/{name}" for name in short.split(", ")] * len(topics)))
+        described.update({name: served[name] for name in re.findall(r"`(get_\w+)`", last)})
+    assert len(described) > 20 and described.items() - served.items() == set()
+    page = (ROOT / "docs" / "use" / "interfaces.md").read_text()
+    assert [name for name in served if name not in described and name.lstrip("/") not in page] == []
+
+
+def test_the_list_of_error_codes_matches_the_message():
+    defined = re.findall(r"^uint16 (\w+) = (\d+)", (ROOT / "ur_ros_rtde_msgs" / "msg" / "ErrorCode.msg").read_text(), re.M)
+    listed = (ROOT / "docs" / "use" / "interfaces.md").read_text().split("\n## Error codes\n")[1]
+    assert re.findall(r"(\d+) ([A-Z_]+)[,.]", listed) == [(number, name) for name, number in defined]
+
+
+def plain(default):
+    """Returns a default in a table as launch_arguments has it: "0.1 s" is 0.1, "none" an empty list."""
+    text = default.split(" ")[0].strip('`"')
+    if text in ("none", "all"):
+        return ()
+    return float(text) if re.match(r"\d", text) else {"true": True}.get(text, text)
+
+
+def test_the_tables_of_parameters_match_the_launch_arguments():
+    """Which another test compares with the parameters of the nodes."""
+    described = {name.strip("`"): (second, third) for name, second, third, _ in rows("parameters.md", 4)}
+    assert set(described) == {argument.name for argument in PARAMETERS}
+    for argument in PARAMETERS:
+        second, third = described[argument.name]
+        if argument.name.startswith("stream_"):
+            assert (plain(second), third) == (argument.default, "{:g} to {:g}".format(*argument.limits)), argument.name
+        else:
+            assert plain(third) == argument.default, argument.name
 
 
 def test_a_dead_link_is_an_error(site, tmp_path, capfd):

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 from typing import Iterator, List, Tuple
 
-from . import console, docs_reference, pins, venv
+from . import console, pins, venv
 from .layout import ROOT, STATE
 
 FOLDER = STATE / "docs"
@@ -56,15 +56,16 @@ def _write_index(source: pathlib.Path) -> None:
     (source / "index.md").write_text((source / "README.md").read_text() + menu)
 
 
-def _stage(source: pathlib.Path) -> None:
-    """Copies the tracked files, which the pages link to, and adds what is generated."""
+def _stage(python: pathlib.Path, source: pathlib.Path) -> None:
+    """Copies the files that git tracks or would add, which the pages link to, and adds what is generated."""
     shutil.rmtree(source, ignore_errors=True)
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout.split("\0")
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout.split("\0")
     for name in filter(None, names):
         if (ROOT / name).is_file():
             (source / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / name, source / name)
-    docs_reference.write(source, source / "reference")
+    subprocess.run([str(python), "-m", "ur_tools.docs_reference", str(source)], cwd=ROOT / "tools", check=True)
     _write_index(source)
     (source / "README.md").unlink()  # it is index.md
 
@@ -80,7 +81,7 @@ def build(output: pathlib.Path) -> pathlib.Path:
     """Returns the first page of the site. Raises Failure if a link is dead or a page is malformed."""
     python, source = ensure_sphinx(), FOLDER / "source"
     console.step("Building the site (about 20 s)")
-    _stage(source)
+    _stage(python, source)
     run_sphinx(python, source, output)
     return output / "index.html"
 
