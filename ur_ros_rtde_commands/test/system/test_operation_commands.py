@@ -200,6 +200,16 @@ class HoldsMakeReady(PassesOn):
         until.wait(timeout)
 
 
+class RejectsStopLate(RejectsStop):
+    holding, connected = threading.Event(), threading.Event()
+
+    def answer(self, line):
+        if line.strip() == b"stop":
+            self.holding.set()
+            self.connected.wait(4.0)
+        return super().answer(line)
+
+
 class HoldsPlay(PassesOn):
     """Holds `play` until the client has sent a stop."""
 
@@ -308,6 +318,31 @@ def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processe
             stop.succeeded()
             assert simulator.is_at_rest() and simulator.state()["program"]["state"] == "STOPPED"
             play.succeeded()
+            assert simulator.is_at_rest()
+        finally:
+            client.close()
+            driver.stop()
+            proxy.shutdown()
+
+
+def test_a_stop_goes_on_with_rtde_that_is_back_when_the_dashboard_server_has_failed(addresses, processes):
+    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), RejectsStopLate) as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "plugins:=[move_j,stop]", namespace="interrupted"))
+        client = Client("interrupted")
+        try:
+            robot_fixtures.make_ready(client)
+            assert client.send(MoveJ, "move_j", joint_positions=home_plus(3.0), speed=0.2).accepted
+            wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
+            simulator.control("refuse_connections", which="rtde")
+            simulator.control("drop_links", which="rtde")
+            stop = client.send(Stop, "stop")
+            assert stop.accepted and RejectsStopLate.holding.wait(10.0)
+            simulator.control("accept_connections", which="rtde")
+            wait_for(lambda: "connected again" in driver.output(), 3.0, "the connection")
+            RejectsStopLate.connected.set()
+            stop.succeeded()
             assert simulator.is_at_rest()
         finally:
             client.close()

@@ -28,7 +28,11 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     return StopReport{*means, tracker_.view().controller_time - begin};
   };
   if (!state_.link().connected) {
-    return stop_without_rtde();
+    const auto without = stop_without_rtde();
+    if (!state_.link().connected) {
+      return without;
+    }
+    // The connection is back, and can tell what stops the arm, or whether it has stopped.
   }
   const auto at_rest = [&](StopMeans means) {
     const auto settled = settle(means, options);

@@ -336,7 +336,7 @@ class Lane:
             if other.accepted and not case.event.ends_driver:
                 other.wait_for_result()
                 self.client.forget(other)
-        report.violations += self.page.wait(case.hold is not None or report.stall > properties.LONG_STALL)
+        report.violations += self.page.wait(case.hold is not None or report.stall > properties.LONG_STALL, case.local)
         if self.holds is not None:
             checks.hold = self.holds.wait()
 

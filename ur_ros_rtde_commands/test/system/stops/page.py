@@ -48,11 +48,13 @@ class Page:
     def fell_back(self) -> bool:
         return any(outcome == stop.Outcome.PROGRAM for outcome, _text in self._reports)
 
-    def wait(self, excused: bool) -> List[str]:
-        """Waits until the page has reported the end of the stop. Returns the violations."""
+    def wait(self, excused: bool, local: bool) -> List[str]:
+        """Waits until the page has reported the end of the stop. Returns the violations. `excused`: a late driver may have to stop the
+        program, which it cannot in local control."""
         if not self._pressed:
             return []
         wait_for(lambda: any(outcome in ENDED for outcome, _text in list(self._reports)), 10.0, "the page to report the end of the stop")
+        allowed = [stop.Outcome.PROGRAM, *([stop.Outcome.FAILED] if local else [])] if excused else []
         failed = [text for outcome, text in self._reports
-                  if outcome == stop.Outcome.FAILED or outcome == stop.Outcome.PROGRAM and not excused]
+                  if outcome in (stop.Outcome.FAILED, stop.Outcome.PROGRAM) and outcome not in allowed]
         return [f"STOP of the page: {text}" for text in failed]
