@@ -10,6 +10,8 @@ from ur_ros_rtde_msgs.action import DashboardCommand, Stop
 
 BEGIN_LIMIT = 0.02  # s of the robot, from a request to the first decelerating cycle
 RECOVERY_LIMIT = 20.0  # s
+CYCLES_TO_BEGIN = 10  # from the end of the control program to the begin of a script
+CONTROL_PROGRAM = "rtde_control"
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,13 @@ def _press(button: Callable[[Any], bool]) -> Callable[[Any], int]:
 
 
 def _stop_button(simulator) -> bool:
-    return simulator.control("stop_program")["program"] == "PLAYING"
+    """A control program that has ended in the same cycle, for a script that then begins, has not obeyed."""
+    if simulator.control("stop_program")["program"] != "PLAYING":
+        return False
+    cycle = simulator.state()["cycle"]
+    wait_for(lambda: simulator.state()["cycle"] > cycle + CYCLES_TO_BEGIN, 2.0, "a script that is about to begin")
+    program = simulator.state()["program"]
+    return program["state"] != "PLAYING" or program["name"] == CONTROL_PROGRAM
 
 
 def _pause_button(simulator) -> bool:
