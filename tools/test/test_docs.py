@@ -103,6 +103,20 @@ def test_every_error_code_and_command_is_in_the_reference(site):
     assert "usage: ./ur test" in commands and "usage: ur call" in commands
 
 
+@pytest.mark.parametrize("name, has, has_not", [
+    ("move_j", {"PREEMPTED", "CLIENT_LOST", "PROTECTIVE_STOP", "NOT_REACHED"}, set()),
+    ("stop", {"BUSY", "LINK_LOST"}, {"PREEMPTED", "CLIENT_LOST", "NOT_REACHED"}),
+    ("make_ready", {"BUSY", "PREEMPTED", "CLIENT_LOST"}, {"NOT_REACHED"}),
+    ("set_digital_output", {"BUSY", "NOT_READY"}, {"PREEMPTED", "NOT_REACHED"}),
+    ("dashboard/play", {"PREEMPTED", "REJECTED_BY_ROBOT"}, {"NOT_REACHED", "CLIENT_LOST"}),
+])
+def test_the_error_codes_of_a_command_follow_from_its_kind(name, has, has_not):
+    pages = (ROOT / "docs" / "use" / "commands").glob("*.md")
+    command = next(command for page in pages for command in docs_commands.of_page(page.read_text()) if command.name == name)
+    codes = docs_commands.error_codes(command, "")
+    assert has <= codes and not has_not & codes, codes
+
+
 def rows(page, columns):
     """Yields the cells of the rows that begin with a name, in the tables of a page of docs/use with so many columns."""
     for line in (ROOT / "docs" / "use" / page).read_text().splitlines():

@@ -89,7 +89,8 @@ def test_the_example_in_python_sends_the_goal_of_ur_call(command, monkeypatch):
 def test_the_examples_in_cpp_compile(tmp_path):
     """As functions of one file: each header is read once."""
     compiler = shutil.which("g++") or pytest.skip("there is no g++")
-    texts = [docs_examples.cpp(command, not command.type.startswith("control_msgs")) for command in COMMANDS]
+    texts = [docs_examples.cpp(command, interface_files.header_name(command.type.rpartition("/")[2]),
+                               not command.type.startswith("control_msgs")) for command in COMMANDS]
     includes = sorted({line for text in texts for line in text.splitlines() if line.startswith("#include")})
     bodies = [re.sub(r"^#include.*\n", "", text, flags=re.M).replace(" main(", f" main_{number}(") for number, text in enumerate(texts)]
     (tmp_path / "goal_client.hpp").write_text(GOAL_CLIENT)

@@ -262,7 +262,7 @@ class Pending:
         times, first = _times(options), _firsts(options.layout, self.outdated)
         estimates = [times.first(name, self.tests) for name in self.outdated]
         seconds = self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
-        most = seconds if all(steps for _, steps in estimates) else build_times.SLOW_HOST * seconds
+        most = seconds + (build_times.SLOW_HOST - 1.0) * sum(estimate for estimate, steps in estimates if not steps)
         again = [name for name, is_first in first.items() if not is_first]
         duration = f"at most {build_times.rounded(most)}" if again else f"about {build_times.span(seconds, most)}"
         if self.outdated:

@@ -65,7 +65,8 @@ def _stage(python: pathlib.Path, source: pathlib.Path) -> None:
         if (ROOT / name).is_file():
             (source / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / name, source / name)
-    subprocess.run([str(python), "-m", "ur_tools.docs_reference", str(source)], cwd=ROOT / "tools", check=True)
+    if subprocess.run([str(python), "-m", "ur_tools.docs_reference", str(source)], cwd=ROOT / "tools").returncode != 0:
+        raise console.Failure("The reference cannot be generated: see the error above")
     _write_index(source)
     (source / "README.md").unlink()  # it is index.md
 

@@ -20,13 +20,14 @@ _INCLUDE = re.compile(r'^#include "([\w/]+)\.hpp"', re.M)
 _TRAITS = re.compile(r"CommandTraits traits\(\) const override\s*\{\s*return \{(.*?)\}", re.S)
 
 # Error codes of all commands, and further ones by the kind of command.
-_COMMON = {"INVALID_GOAL", "CANCELED", "TIMEOUT", "LINK_LOST", "EXCEPTION", "SHUTDOWN"}
+_COMMON = {"INVALID_GOAL", "BUSY", "CANCELED", "TIMEOUT", "LINK_LOST", "EXCEPTION", "SHUTDOWN"}
 _STATE = {"NOT_READY", "PROTECTIVE_STOP", "EMERGENCY_STOP", "SAFEGUARD_STOP", "PROGRAM_STOPPED", "SAFETY_VIOLATION"}
 _BY_KIND: Dict[str, Set[str]] = {
-    "motion": {*_STATE, "BUSY", "PREEMPTED", "CLIENT_LOST", "REJECTED_BY_ROBOT", "MODEL_MISMATCH", "ROBOT_IN_USE"},
-    "in every state": set(),
-    "other": {"BUSY", "NOT_READY", "CLIENT_LOST", "REJECTED_BY_ROBOT"},
-    "dashboard": {"BUSY", "PREEMPTED", "REJECTED_BY_ROBOT", "NOT_SUPPORTED"},
+    "motion": {*_STATE, "PREEMPTED", "CLIENT_LOST", "REJECTED_BY_ROBOT", "MODEL_MISMATCH", "ROBOT_IN_USE"},
+    "stop": set(),
+    "in every state": {"PREEMPTED", "CLIENT_LOST"},
+    "other": {"NOT_READY", "CLIENT_LOST", "REJECTED_BY_ROBOT"},
+    "dashboard": {"PREEMPTED", "REJECTED_BY_ROBOT", "NOT_SUPPORTED"},
 }
 # Those of the parts of the driver that a command uses.
 _BY_USE = {
@@ -93,7 +94,9 @@ def _kind(name: str, source: str) -> str:
     traits = found[1] if found else ""
     if name.startswith("dashboard/"):
         return "dashboard"
-    if re.search("preempts_all|stops_arm|allowed_in_any_state", traits):
+    if re.search("preempts_all|stops_arm", traits):
+        return "stop"
+    if "allowed_in_any_state" in traits:
         return "in every state"
     return "other" if re.search("Resource::(none|io)", traits) else "motion"
 

@@ -1,7 +1,6 @@
 """The example of a command in Python and in C++, from that for `ur call`."""
 
 import json
-import re
 from typing import Any, Dict, Iterator, List
 
 from .docs_commands import Command
@@ -69,16 +68,11 @@ def _assignments(target: str, value: Any) -> Iterator[str]:
         yield f"{target} = {'{' + values[1:-1] + '}' if isinstance(value, list) else values};"
 
 
-def _snake_case(name: str) -> str:
-    """Returns the name of the header of an interface, as rosidl does: "move_jik" for "MoveJIK"."""
-    separated = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
-    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", separated).lower()
-
-
-def cpp(command: Command, has_success: bool) -> str:
-    """`has_success`: the result has the fields that all commands of this project have."""
-    package, folder, name = command.type.split("/")
+def cpp(command: Command, header: str, has_success: bool) -> str:
+    """`header`: of the interface, without folder and ending. `has_success`: the result has the fields that all commands of this project
+    have."""
+    package, folder, _ = command.type.split("/")
     return _CPP.format(
-        header=f"{package}/{folder}/{_snake_case(name)}.hpp", type=command.type.replace("/", "::"), name=command.name,
+        header=f"{package}/{folder}/{header}.hpp", type=command.type.replace("/", "::"), name=command.name,
         assignments="".join(f"    {line}\n" for line in _assignments("goal", command.goal)),
         status="goal_client::report(response)" if has_success else "response.result->error_code")

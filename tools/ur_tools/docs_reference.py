@@ -82,7 +82,7 @@ def _errors(command: Command, file: pathlib.Path) -> Page:
 
 def _examples(command: Command, is_ours: bool) -> Page:
     texts = {"bash": command.call, "python": docs_examples.python(command),
-             "cpp": docs_examples.cpp(command, is_ours)}
+             "cpp": docs_examples.cpp(command, interface_files.header_name(command.type.rpartition("/")[2]), is_ours)}
     return [line for language, text in texts.items() for line in (f"```{language}", text.rstrip(), "```", "")]
 
 

@@ -42,6 +42,11 @@ def find(name: str) -> pathlib.Path:
     raise FileNotFoundError(f"{name} is in no prefix of AMENT_PREFIX_PATH")
 
 
+def header_name(kind: str) -> str:
+    """Returns the name that rosidl gives the header of an interface: "move_jik" for "MoveJIK"."""
+    return re.sub("([a-z0-9])([A-Z])", r"\1_\2", re.sub("(.)([A-Z][a-z]+)", r"\1_\2", kind)).lower()
+
+
 def parse(file: pathlib.Path) -> List[List[Field]]:
     """Returns the sections of an interface file, each as a list of Fields."""
     parts: List[List[Field]] = [[]]

@@ -7,6 +7,7 @@ from typing import Dict
 from xml.sax.saxutils import escape
 
 from .errors import CliError, OperationFailed
+from .interface_files import header_name
 
 TEMPLATES = pathlib.Path(__file__).parent / "templates"
 # Folders of templates of each kind of plugin, and the default description.
@@ -24,15 +25,10 @@ def _checked(what: str, name: str) -> str:
     return name
 
 
-def _snake(pascal: str) -> str:
-    """Returns the name that rosidl gives the header of an interface."""
-    return re.sub("([a-z0-9])([A-Z])", r"\1_\2", re.sub("(.)([A-Z][a-z]+)", r"\1_\2", pascal)).lower()
-
-
 def _pascal(name: str) -> str:
     pascal = "".join(part.capitalize() for part in name.split("_"))
-    if _snake(pascal) != name:
-        raise CliError(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {_snake(pascal)}; use that name")
+    if header_name(pascal) != name:
+        raise CliError(f"the name is \"{name}\": rosidl names the header of its interface {pascal} {header_name(pascal)}; use that name")
     return pascal
 
 

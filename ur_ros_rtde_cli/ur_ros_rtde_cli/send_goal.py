@@ -29,6 +29,9 @@ def _server_not_found(session: Session, name: str, requested: str) -> CliError:
     if elsewhere:
         return CliError(f"no server of {name}{elsewhere}")
     served = actions.served(session.node)
+    namespaces = sorted(full[:-len(requested)].rstrip("/") or "/" for full in served if full.endswith(f"/{requested}"))
+    if namespaces:
+        return CliError(f"no server of {name}, but of this action in {' and '.join(namespaces)}: give --namespace")
     hint = actions.suggestion(requested, {full.lstrip("/") for full in served} | set(actions.plugin_names()))
     if not served:
         return CliError(f"no server of {name}{hint or '.'} No action server was found. Does command_server run with "

@@ -78,6 +78,13 @@ def test_arrays_of_a_wrong_shape_are_named(arguments, text):
         trajectory(*arguments)
 
 
+def test_only_a_trajectory_with_joint_names_starts_at_a_time():
+    message = trajectory([0.0, 1.0], np.zeros((2, 6)), joint_names=["a", "b"], start_at=12.25)
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (12, 250000000)
+    with pytest.raises(ValueError, match="start_at needs joint_names"):
+        trajectory([0.0, 1.0], np.zeros((2, 6)), start_at=12.25)
+
+
 @pytest.mark.parametrize("text, fields", [
     ("timestamp,actual_q_0,actual_q_1\n1,2,3\n4,5,6\n", {"timestamp": [1, 4], "actual_q": [[2, 3], [5, 6]]}),
     ("output_int_register_0,timestamp\n1,2\n", {"output_int_register_0": [1], "timestamp": [2]}),

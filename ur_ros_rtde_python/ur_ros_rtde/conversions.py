@@ -44,8 +44,10 @@ def trajectory(times: ArrayLike, positions: ArrayLike, velocities: ArrayLike | N
 
     `times` are the N times from the start in s. The other arrays have N rows of 6 joints in rad, rad/s and rad/s^2. For
     follow_joint_trajectory, which needs `joint_names`: `start_at` is the time of its start in s since the epoch, so that several arms
-    start together; 0: at once.
+    start together; 0, and a time that is over when the goal arrives: at once.
     """
+    if start_at and not joint_names:
+        raise ValueError("start_at needs joint_names: follow_joint_trajectory heeds it, execute_parametrized_trajectory does not")
     duration, point = interface("builtin_interfaces/msg/Duration"), interface("trajectory_msgs/msg/JointTrajectoryPoint")
     seconds = numpy.asarray(times, float)
     if seconds.ndim != 1:

@@ -209,7 +209,8 @@ Status Robot::Impl::ready_to_move() const
 Generation Robot::Impl::generation() const
 {
   const auto view = tracker.view();
-  return {view.program, interfaces.starts(), view.link, stopper.ended_programs() + scripts.ended_programs()};
+  return {view.program, interfaces.starts(), view.link, stopper.ended_programs() + scripts.ended_programs(),
+          scripts.restarts()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

@@ -449,6 +449,23 @@ TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
   EXPECT_EQ(robot->latest()->digital_outputs & 4U, 0U);
 }
 
+TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
+{
+  make_both();
+  Generation received;
+  ScriptOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {  // the control program has yielded
+    received = robot->generation();
+    return stopped_by_the_driver();
+  };
+  EXPECT_EQ(run_script(turning(), options).end, ScriptEnd::rejected);
+  ASSERT_TRUE(becomes_ready());
+  const Status continued = robot->is_continued(received);
+  EXPECT_TRUE(continued) << continued.error().message;
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(eventually([&] { return !robot->is_continued(received); })) << "an operator has stopped it";
+}
+
 TEST_F(ScriptTest, IsNotSentAsSecondaryProgramAfterACancelThatTheThreadHasNotSeen)
 {
   make_both();

@@ -14,13 +14,14 @@ times = np.linspace(0.0, 4.0, 41)
 swing = 0.15 * (1.0 - np.cos(np.pi * times / 2.0))  # rad, there and back
 
 
-def plan(arm, direction, start_at):
-    return trajectory(times, arm.state.joint_positions + np.outer(swing, direction), joint_names=arm.state.joint_names, start_at=start_at)
+def path(arm, direction):
+    return {"positions": arm.state.joint_positions + np.outer(swing, direction), "joint_names": arm.state.joint_names}
 
 
 with Robot("left") as left, Robot("right") as right:
-    start_at = time.time() + 1.0
-    plans = plan(left, [1, 0, 0, 0, 0, 0], start_at), plan(right, [-1, 0, 0, 0, 0, 0], start_at)
+    paths = path(left, [1, 0, 0, 0, 0, 0]), path(right, [-1, 0, 0, 0, 0, 0])
+    start_at = time.time() + 1.0  # both goals have to arrive before
+    plans = [trajectory(times, **path, start_at=start_at) for path in paths]
     try:
         with left.start.follow_joint_trajectory(plans[0]) as one, right.start.follow_joint_trajectory(plans[1]) as other:
             wait_for_all(one, other)

@@ -4,7 +4,19 @@ import itertools
 from unittest.mock import MagicMock
 
 import pytest
-from ur_ros_rtde_viewer.control.jog import FIRST_GAP, HOLD_RATE, STOPPED, STREAM_TIMEOUT, TWO_BUTTONS, Frame, Hold, Jog, JogSpeed, Meaning
+from ur_ros_rtde_viewer.control.jog import (
+    FIRST_GAP,
+    HOLD_RATE,
+    RELEASE_TIME,
+    STOPPED,
+    STREAM_TIMEOUT,
+    TWO_BUTTONS,
+    Frame,
+    Hold,
+    Jog,
+    JogSpeed,
+    Meaning,
+)
 
 BACKGROUND = True
 GAP = 1.2 * FIRST_GAP  # s
@@ -107,6 +119,13 @@ def test_a_second_finger_on_another_button_stops_the_arm_until_both_are_released
     jog.let_go("tab", other)
     speeds, reasons = jog.hold_for(0.5, "tab", axes=(X,))
     assert any(speeds) and reasons == [None]
+
+
+def test_a_button_whose_release_was_lost_does_not_block_the_others(jog):
+    jog.now += RELEASE_TIME
+    speeds, reasons = jog.hold_for(0.5, "tab", axes=(X,))
+    assert any(speeds) and reasons == [None]
+    assert jog.hold_for(0.1, "tab") == ([0.0], [TWO_BUTTONS])
 
 
 def test_two_fingers_in_one_tab_do_not_stop_the_motion_of_another_tab(jog):

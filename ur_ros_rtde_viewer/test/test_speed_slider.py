@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 from ur_ros_rtde_viewer.control.goals import Phase, SentGoal
-from ur_ros_rtde_viewer.control.speed_control import HOLD_TIME, SEND_PERIOD, SpeedControl
+from ur_ros_rtde_viewer.control.speed_control import ANSWER_TIMEOUT, HOLD_TIME, SEND_PERIOD, SpeedControl
 from ur_ros_rtde_viewer.panels.speed_slider import SETTLING_TIME, SpeedSlider
 from ur_ros_rtde_viewer.state.robot_state import RobotState
 
@@ -160,3 +160,20 @@ def test_a_failure_is_explained_and_the_reported_value_returns(page):
     page.input(50)
     page.run(2.0 * SEND_PERIOD)
     assert page.slider.message.content == ""
+
+
+def test_a_value_that_was_reported_while_the_slider_was_held_is_shown_afterwards(page):
+    page.input(50)
+    page.run(0.1)
+    page.report(80)  # on the pendant
+    page.run(HOLD_TIME + SETTLING_TIME)
+    assert page.element.value == 80
+
+
+def test_a_driver_that_has_ended_is_reported_and_the_next_value_is_sent(page):
+    page.input(50)
+    page.run(ANSWER_TIMEOUT + 1.0, answers=False)
+    assert page.slider.message.content == "Not set: the driver did not answer within 5 s" and page.element.value == 100
+    page.input(60)
+    page.run(2.0 * SEND_PERIOD)
+    assert [percent for _, percent, _ in page.goals] == [50, 60] and page.slider.message.content == ""

@@ -55,9 +55,6 @@ class DashboardCommand : public DashboardPlugin {
   virtual bool stops_program() const { return false; }
   /// Of those: the arm has no power afterwards. A request of make_ready that is under way ends before.
   virtual bool powers_off() const { return false; }
-  /// The command brings the arm into operation, or moves it. Its request is not sent after a stop that came
-  /// later than the goal.
-  virtual bool starts_arm() const { return false; }
   /// The command stops the arm: its goals are served by the thread that serves stops, beside the limit of
   /// goals.
   virtual bool stops_arm() const { return stops_program(); }
@@ -108,22 +105,22 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
   }
   Outcome execute() override
   {
-    run_.emplace(host_.connection(), shared_stop_request(),
-                 [this](const void * feedback) { handle().publish_feedback(feedback); });
+    run_.emplace(
+        host_.connection(), shared_stop_request(),
+        [this] { return host_.begin_startup_request(stops_before_); },
+        [this](const void * feedback) { handle().publish_feedback(feedback); });
     const auto hold = std::move(hold_);
     if (command_.powers_off()) {
       host_.wait_for_startup_requests();
     }
-    if (command_.starts_arm()) {
-      auto request = host_.begin_startup_request(stops_before_);
-      if (!request) {
-        return request.error();
-      }
-      run_->set_startup_request(*std::move(request));
+    const auto run = [this] { return command_.run(message_, *run_); };
+    const bool may_begin = command_.stops_program() && !command_.powers_off() && host_.has_startup_requests();
+    const Outcome outcome = guarded(stop_request(), run);
+    if (!may_begin) {
+      return outcome;
     }
-    const Outcome outcome = guarded(stop_request(), [this] { return command_.run(message_, *run_); });
-    run_->set_startup_request(nullptr);
-    return outcome;
+    host_.wait_for_startup_requests();  // a program may begin after the stop
+    return guarded(stop_request(), [&] { return run_->is_program_stopped() ? outcome : run(); });
   }
   void send_result(const Outcome & outcome, bool abandoned) override
   {

@@ -21,9 +21,6 @@ struct ExpectedState {
   /// The answer to the command is proof enough. The state may have been left again before it is seen, as when
   /// the driver starts its control program again: it is waited for, but for 1 s at most, and not required.
   bool is_confirmed_by_answer = false;
-  /// The arm may move in this state. Of a command that starts the arm: a stop that comes before it waits for
-  /// it, and then ends it.
-  bool is_awaited_by_stops = false;
 };
 
 /// The oldest version of PolyScope that supports a command.
@@ -32,6 +29,13 @@ struct MinVersion {
   unsigned minor = 0;
 };
 constexpr MinVersion never{~0U, 0};
+
+/// What a command starts. Its line is not sent after a stop that came later than the goal.
+enum class Starts {
+  nothing,
+  power,    ///< a stop that comes later waits for the answer
+  program,  ///< it may move the arm: a stop that comes later waits until it plays, at most 1 s, and ends it
+};
 
 /// A command or query to the dashboard server (UR, "Dashboard Server e-Series, port 29999", "… CB-Series").
 struct DashboardRequest {
@@ -43,6 +47,7 @@ struct DashboardRequest {
   ExpectedState expected{};
   /// s, for the answer and the expected state together, if the goal has no field `timeout`.
   double timeout = 60.0;
+  Starts starts = Starts::nothing;
 };
 
 /// The controllers that support a command, and the values of its text.
@@ -61,7 +66,11 @@ Status supported(const std::string & action, const DashboardLimits & limits,
 /// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
-  DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request);
+  /// Null if no stop can come; fails if one has come.
+  using BeginStart = std::function<Expected<std::shared_ptr<void>>()>;
+
+  DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request,
+               BeginStart begin_start = {});
   virtual ~DashboardRun() = default;
   DashboardRun(const DashboardRun &) = delete;
   DashboardRun & operator=(const DashboardRun &) = delete;
@@ -72,6 +81,8 @@ class DashboardRun {
   /// The answer without its label: "RUNNING" for "Robotmode: RUNNING".
   std::string query_value(const std::string & question);
 
+  bool is_program_stopped() { return query_value("programState").starts_with("STOPPED"); }
+
   /// Sends a command whose answer has to begin with `reply`, and waits for the expected state, if there is
   /// one. `timeout`: s, for both together.
   Outcome command(const std::string & line, const std::string & reply, const ExpectedState & expected = {},
@@ -81,16 +92,13 @@ class DashboardRun {
   /// Sends a line on a connection of its own. Every answer counts as success and is the message of the
   /// outcome.
   Outcome raw(const std::string & line, double timeout = 60.0);
-  /// Executes the request with command() or query().
+  /// Executes the request with command() or query(). Only this function heeds DashboardRequest::starts.
   Outcome execute(const DashboardRequest & request, double timeout);
 
   /// Why the goal has to stop now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const { return stop_request_->reason(); }
   /// Returns early, with the reason, when the goal has to stop.
   std::optional<StopReason> sleep_for(std::chrono::nanoseconds duration);
-
-  /// Of a command that starts the arm: ends with the answer to its first command.
-  void set_startup_request(std::shared_ptr<void> request) { startup_request_ = std::move(request); }
 
   /// The last answer to a command or query, for the result.
   const std::string & answer() const { return answer_; }
@@ -99,12 +107,15 @@ class DashboardRun {
   using Clock = std::chrono::steady_clock;
   /// Publishes the answer to the query of an expected state, when it changes.
   virtual void publish_state(const std::string & state) = 0;
+  Outcome start(const DashboardRequest & request, double timeout);
+  void wait_until_it_plays(const ExpectedState & playing);
+  Outcome take_answer(const std::string & line, const Expected<std::string> & answer, double timeout);
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
 
   DashboardConnection & connection_;
   std::shared_ptr<const StopRequest> stop_request_;
-  std::shared_ptr<void> startup_request_;  ///< of CommandHost
+  const BeginStart begin_start_;
   std::string answer_;
 };
 
@@ -115,8 +126,9 @@ class DashboardGoalRun : public DashboardRun {
   using PublishFeedback = std::function<void(const void * feedback)>;
 
   DashboardGoalRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request,
-                   PublishFeedback publish)
-      : DashboardRun(connection, std::move(stop_request)), publish_(std::move(publish))
+                   BeginStart begin_start, PublishFeedback publish)
+      : DashboardRun(connection, std::move(stop_request), std::move(begin_start)),
+        publish_(std::move(publish))
   {
   }
 

@@ -81,9 +81,11 @@ class CommandHost : public PluginHost {
   /// For a request that brings the arm into operation, which is under way while the returned object exists.
   /// Null, and it must not be sent, if `stops` are not all stops.
   std::shared_ptr<void> begin_startup_request(std::uint32_t stops);
-  /// After a stop has begun: waits until no request is under way that would bring the arm into operation
-  /// again, but at most 2.5 s. Returns whether one was.
-  bool wait_for_startup_requests();
+  /// After a stop has begun: whether a request is under way that would bring the arm into operation again, or
+  /// has just ended.
+  bool has_startup_requests() const { return startup_requests_.may_take_effect(); }
+  /// Waits for them, but at most 3.5 s.
+  void wait_for_startup_requests();
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
   void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
@@ -122,6 +124,7 @@ class DashboardHost : public PluginHost {
   {
     return commands_ != nullptr ? commands_->end_script(why) : nullptr;
   }
+  bool has_startup_requests() const { return commands_ != nullptr && commands_->has_startup_requests(); }
   void wait_for_startup_requests() const
   {
     if (commands_ != nullptr) {

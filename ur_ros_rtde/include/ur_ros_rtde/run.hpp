@@ -164,9 +164,9 @@ class Run {
   friend class TargetStream;
   /// For how long control() waits for the call of another thread: a stream must not outlast its timeout.
   /// Zero: the default of Locked. Otherwise its calls go before those of others. Returns what was set before.
-  std::chrono::milliseconds exchange_patience(std::chrono::milliseconds patience)
+  std::chrono::milliseconds exchange_control_timeout(std::chrono::milliseconds timeout)
   {
-    return std::exchange(patience_, patience);
+    return std::exchange(control_timeout_, timeout);
   }
   using Distance = std::function<double(const Sample &)>;
   Outcome until_reached(const Distance & distance, double tolerance, const char * unit);
@@ -189,7 +189,7 @@ class Run {
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
   std::chrono::steady_clock::time_point last_call_ = begin_;
   MotionMark mark_;
-  std::chrono::milliseconds patience_{0};
+  std::chrono::milliseconds control_timeout_{0};
 };
 
 /// Run with the result and the feedback of action `A`.

@@ -122,9 +122,9 @@ class TargetStream {
   TargetFollower & follower_;
   const StreamOptions options_;
   const double cycle_;
-  const std::chrono::milliseconds patience_;  // of Run before this stream
   Sample sample_;
-  double elapsed_ = 0.0;  // s between the last two packages
+  std::chrono::milliseconds control_timeout_;  // of Run before this stream
+  double elapsed_ = 0.0;                       // s between the last two packages
   TargetPeriod period_;
   Clock::time_point last_target_ = Clock::now();
   bool has_target_ = false;

@@ -29,13 +29,15 @@ Status query_dashboard(const Robot & robot)
   return mode ? Status() : tl::unexpected(mode.error());
 }
 
-/// The samples show what the dashboard server has told some cycles later.
-void wait_for_effects(const Robot & robot)
+/// Whether a program plays that is not of this driver. The samples show what the dashboard server has told
+/// some cycles later.
+bool foreign_program_plays(const Robot & robot)
 {
   constexpr int cycles = 5;
   Sample sample = robot.latest().value_or(Sample{});
   for (int i = 0; i < cycles && robot.wait_for_next(sample, milliseconds(100)); ++i) {
   }
+  return sample.is_program_running() && !robot.ready_to_move();
 }
 
 /// The failure may be a consequence of a lost connection or of an ended program.
@@ -134,11 +136,13 @@ Status CommandGoal::check(std::vector<GoalQuery> & queries)
     return tl::unexpected(*result.error());
   }
   stop_options_ = stop_options();
+  stop_options_.ends_foreign_program = command_->traits.preempts_all;
   for (RobotQuery & query : result.take_queries()) {
     queries.push_back([this, ask = std::move(query)] { return ask(robot()); });
   }
   if (command_->traits.preempts_all) {
     begin_stop();  // now: the acceptance may have to wait for the discovery of the client
+    program_may_begin_ = command_->host.has_startup_requests();
   }
   return {};
 }
@@ -148,7 +152,6 @@ void CommandGoal::begin_stop()
   if (const auto holder = robot().holder(Resource::script)) {
     preempted_goal_ = fmt::format("{}, goal {}", holder->owner, holder->id);
   }
-  stop_options_.ends_foreign_program = true;
   stopping_ = command_->host.begin_stop(
       stop_options_,
       Error{ErrorCode::preempted, fmt::format("preempted by {}, goal {}", action(), id().short_string())});
@@ -271,9 +274,11 @@ Outcome CommandGoal::execute()
   const Generation begin = robot().generation();
   Outcome outcome = guarded(stop_request(), [&]() -> Outcome {
     if (command_->only_stops()) {
-      if (command_->host.wait_for_startup_requests()) {
-        wait_for_effects(robot());
-        begin_stop();  // of what the request has started since the first one
+      if (program_may_begin_) {
+        command_->host.wait_for_startup_requests();
+        if (foreign_program_plays(robot())) {
+          begin_stop();  // after the first one
+        }
       }
       return run_command(make_context());
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <thread>
 
 #include "ur_ros_rtde/dashboard_command.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
@@ -21,6 +22,9 @@ constexpr std::string_view not_understood = "could not understand";
 constexpr std::chrono::milliseconds polling_interval{50};
 constexpr std::chrono::milliseconds answer_timeout{5000};
 constexpr std::chrono::milliseconds confirmed_state_timeout{1000};
+/// Together shorter than the wait of a stop (startup_request_timeout in plugin_host.cpp).
+constexpr std::chrono::milliseconds start_answer_timeout{2000};
+constexpr std::chrono::milliseconds begin_of_program_timeout{1000};
 constexpr std::chrono::hours longest_wait{24 * 365};
 
 /// `timeout` in s.
@@ -98,8 +102,9 @@ Status dashboard_ready(const std::string & action, const DashboardLimits & limit
                                            : status.error.message);
 }
 
-DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request)
-    : connection_(connection), stop_request_(std::move(stop_request))
+DashboardRun::DashboardRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request,
+                           BeginStart begin_start)
+    : connection_(connection), stop_request_(std::move(stop_request)), begin_start_(std::move(begin_start))
 {
 }
 
@@ -125,7 +130,12 @@ Outcome DashboardRun::query(const std::string & question)
 
 Outcome DashboardRun::raw(const std::string & line, double timeout)
 {
-  const auto answer = connection_.request(line, to_duration(timeout), stop_request_->token());
+  return take_answer(line, connection_.request(line, to_duration(timeout), stop_request_->token()), timeout);
+}
+
+Outcome DashboardRun::take_answer(const std::string & line, const Expected<std::string> & answer,
+                                  double timeout)
+{
   if (!answer) {
     if (auto why = stop_reason()) {
       return *why;
@@ -141,11 +151,7 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
                               const ExpectedState & expected, double timeout)
 {
   const auto deadline = Clock::now() + to_duration(timeout);
-  Outcome answered = raw(line, timeout);
-  if (!expected.is_awaited_by_stops) {
-    startup_request_.reset();
-  }
-  if (!answered) {
+  if (Outcome answered = raw(line, timeout); !answered) {
     return answered;
   }
   if (!begins_with(answer_, reply)) {
@@ -154,8 +160,51 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
   return expected.query.empty() ? Outcome::success(answer_) : until(expected, deadline, timeout);
 }
 
+/// A goal that has to end still waits for the answer: the request may take effect until then.
+Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
+{
+  const auto deadline = Clock::now() + to_duration(timeout);
+  auto under_way = begin_start_ ? begin_start_() : nullptr;
+  if (!under_way) {
+    return under_way.error();
+  }
+  const auto answer =
+      connection_.request(request.line, std::min(to_duration(timeout), start_answer_timeout), {});
+  if (Outcome answered = take_answer(request.line, answer, timeout); !answered) {
+    return answered;
+  }
+  if (!begins_with(answer_, request.reply)) {
+    return rejection(request.line);
+  }
+  if (request.starts == Starts::program) {
+    wait_until_it_plays(request.expected);
+  }
+  under_way->reset();
+  if (auto why = stop_reason()) {
+    return *why;
+  }
+  return request.expected.query.empty() ? Outcome::success(answer_)
+                                        : until(request.expected, deadline, timeout);
+}
+
+void DashboardRun::wait_until_it_plays(const ExpectedState & playing)
+{
+  const auto deadline = Clock::now() + begin_of_program_timeout;
+  DashboardSession session(connection_.address());
+  while (Clock::now() < deadline) {
+    const auto state = session.request(playing.query, begin_of_program_timeout, {});
+    if (!state || is_one_of(without_label(*state), playing.states)) {
+      return;
+    }
+    std::this_thread::sleep_for(polling_interval);
+  }
+}
+
 Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
 {
+  if (request.starts != Starts::nothing) {
+    return start(request, timeout);
+  }
   return request.reply.empty() ? query(request.line)
                                : command(request.line, request.reply, request.expected, timeout);
 }

@@ -5,8 +5,8 @@
 namespace ur_ros_rtde {
 namespace {
 
-/// Longer than the commands wait for an answer of the dashboard server.
-constexpr std::chrono::milliseconds startup_request_timeout{2500};
+/// Longer than a request that starts something is under way.
+constexpr std::chrono::milliseconds startup_request_timeout{3500};
 
 }  // namespace
 
@@ -64,16 +64,12 @@ std::shared_ptr<void> CommandHost::begin_startup_request(std::uint32_t stops)
   return startup_requests_.begin([&] { return stops_ == stops; });
 }
 
-bool CommandHost::wait_for_startup_requests()
+void CommandHost::wait_for_startup_requests()
 {
-  if (!startup_requests_.are_under_way()) {
-    return false;
-  }
   if (!startup_requests_.wait_until_none(startup_request_timeout)) {
     RCL_CXX_WARN(node().get_logger(),
                  "a request that brings the arm into operation is still under way: check the arm");
   }
-  return true;
 }
 
 Expected<std::shared_ptr<void>> DashboardHost::begin_startup_request(std::uint32_t stops) const

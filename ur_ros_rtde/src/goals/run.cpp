@@ -43,7 +43,7 @@ Locked<ur_rtde::RTDEControlInterface> Run::control()
   last_call_ = Clock::now();
   const auto control =
       context_.lease != nullptr ? context_.robot.control(*context_.lease) : control_for_queries();
-  return patience_.count() > 0 ? control.before_others(patience_) : control;
+  return control_timeout_.count() > 0 ? control.before_others(control_timeout_) : control;
 }
 
 Expected<StopReport> Run::wait_for_stop()

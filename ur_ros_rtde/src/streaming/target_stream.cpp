@@ -12,6 +12,8 @@ namespace {
 constexpr double period_weight = 0.2;
 /// Of the control period: a longer gap between two packages counts as this long.
 constexpr double max_cycles = 2.0;
+/// The default of Locked.
+constexpr std::chrono::milliseconds max_control_timeout{5000};
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -39,16 +41,17 @@ TargetStream::TargetStream(Run & run, TargetFollower & follower, const StreamOpt
       follower_(follower),
       options_(options),
       cycle_(run.robot().cycle_time()),
-      patience_(run.exchange_patience(
-          std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(options.timeout)))),
       sample_(run.state())
 {
   follower_.begin(sample_, cycle_, run.robot().limits());
+  control_timeout_ = run.exchange_control_timeout(
+      std::min(max_control_timeout,
+               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(options.timeout))));
 }
 
 TargetStream::~TargetStream()
 {
-  run_.exchange_patience(patience_);
+  run_.exchange_control_timeout(control_timeout_);
 }
 
 std::optional<StopReason> TargetStream::wait()

@@ -9,30 +9,23 @@ class StoppingCommand : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::
   bool stops_program() const override { return true; }
 };
 
-/// Brings the arm into operation, or moves it.
-class StartingCommand : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
- public:
-  using SimpleDashboardCommand::SimpleDashboardCommand;
-  bool starts_arm() const override { return true; }
-};
-
 // Arm power
-class PowerOn : public StartingCommand {
- public:
-  PowerOn() : StartingCommand({"power on", "Powering on", {"robotmode", {"IDLE", "RUNNING"}}}) {}
-};
-UR_ROS_RTDE_EXPORT(PowerOn, "dashboard/power_on")
+EXPORT_DASHBOARD_COMMAND(PowerOn, "dashboard/power_on", DashboardCommand,
+                         {.line = "power on",
+                          .reply = "Powering on",
+                          .expected = {"robotmode", {"IDLE", "RUNNING"}},
+                          .starts = Starts::power})
 class PowerOff : public StoppingCommand {
  public:
   PowerOff() : StoppingCommand({"power off", "Powering off", {"robotmode", {"POWER_OFF"}}}) {}
   bool powers_off() const override { return true; }
 };
 UR_ROS_RTDE_EXPORT(PowerOff, "dashboard/power_off")
-class BrakeRelease : public StartingCommand {
- public:
-  BrakeRelease() : StartingCommand({"brake release", "Brake releasing", {"robotmode", {"RUNNING"}}}) {}
-};
-UR_ROS_RTDE_EXPORT(BrakeRelease, "dashboard/brake_release")
+EXPORT_DASHBOARD_COMMAND(BrakeRelease, "dashboard/brake_release", DashboardCommand,
+                         {.line = "brake release",
+                          .reply = "Brake releasing",
+                          .expected = {"robotmode", {"RUNNING"}},
+                          .starts = Starts::power})
 class Shutdown : public StoppingCommand {
  public:
   Shutdown() : StoppingCommand({"shutdown", "Shutting down"}) {}
@@ -41,15 +34,11 @@ class Shutdown : public StoppingCommand {
 UR_ROS_RTDE_EXPORT(Shutdown, "dashboard/shutdown")
 
 // Program
-class Play : public StartingCommand {
- public:
-  Play() : StartingCommand({"play", "Starting program", playing}) {}
-
- private:
-  static inline const ExpectedState playing{
-      .query = "programState", .states = {"PLAYING"}, .is_awaited_by_stops = true};
-};
-UR_ROS_RTDE_EXPORT(Play, "dashboard/play")
+EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
+                         {.line = "play",
+                          .reply = "Starting program",
+                          .expected = {"programState", {"PLAYING"}},
+                          .starts = Starts::program})
 class Pause : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
  public:
   Pause() : SimpleDashboardCommand({"pause", "Pausing program", {"programState", {"PAUSED"}}}) {}

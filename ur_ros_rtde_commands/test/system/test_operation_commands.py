@@ -11,7 +11,7 @@ from arm_state import home_plus, wait_until_moving
 from support import HOME, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Stop, Trigger
-from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
 
 RECOVERY_TIME_FACTOR = 1.0  # real durations
 
@@ -217,12 +217,14 @@ class RejectsStopLate(RejectsStop):
 class HoldsPlay(PassesOn):
     """Holds `play` until the client has sent a stop."""
 
-    holding, stopped = threading.Event(), threading.Event()
+    @classmethod
+    def arm(cls):
+        cls.holding, cls.stopped = threading.Event(), threading.Event()
 
     def answer(self, line):
         if line.strip() == b"play":
             self.holding.set()
-            self.stopped.wait(10.0)
+            self.stopped.wait(1.5)  # the driver waits for 2 s
         return super().answer(line)
 
 
@@ -303,8 +305,11 @@ def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simu
     assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.5, abs=0.01)
 
 
-def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processes):
+@pytest.mark.parametrize("is_canceled", [False, True], ids=["", "canceled"])
+@pytest.mark.parametrize("action, name", [(Stop, "stop"), (DashboardCommand, "dashboard/stop")])
+def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processes, action, name, is_canceled):
     simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
+    HoldsPlay.arm()
     with DashboardProxy((addresses[1], DASHBOARD_PORT), HoldsPlay) as proxy:
         threading.Thread(target=proxy.serve_forever, daemon=True).start()
         driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "restart_program:=false",
@@ -316,29 +321,37 @@ def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processe
             simulator.control("store_program", name="moves.urp", script=f"movej({home_plus(3.0)}, a=1, v=0.2)", load=True)
             play = client.send(DashboardCommand, "dashboard/play")
             assert HoldsPlay.holding.wait(10.0)
-            stop = client.send(Stop, "stop")
+            if is_canceled:
+                play.cancel()
+            stop = client.send(action, name)
             assert stop.accepted
             HoldsPlay.stopped.set()
             stop.succeeded()
-            assert simulator.is_at_rest() and simulator.state()["program"]["state"] == "STOPPED"
-            play.succeeded()
-            assert simulator.is_at_rest()
+            assert play.wait_for_result()[1].success is not is_canceled
+            assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
+            end = simulator.state()["cycle"] + 100
+            wait_for(lambda: simulator.state()["cycle"] > end, 10.0, "cycles in which the arm would move")
+            assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
         finally:
             client.close()
             driver.stop()
             proxy.shutdown()
 
 
-def stop_while_rtde_comes_back(driver, client, simulator):
+def stop_while_rtde_comes_back(client, simulator):
     """Returns the result of a stop."""
-    connections = driver.output().count("connected again")
+    states = client.subscribe(DriverState, "driver_state", transient_local=True)
+
+    def is_disconnected():
+        return states[-1].name == "DISCONNECTED"
+
     simulator.control("refuse_connections", which="rtde")
     simulator.control("drop_links", which="rtde")
-    wait_for(lambda: not client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 10.0, "the driver to notice it")
+    wait_for(lambda: states and is_disconnected(), 10.0, "the driver to notice it")
     RejectsStopLate.arm()
     stop = client.send(Stop, "stop")
     simulator.control("accept_connections", which="rtde")
-    wait_for(lambda: driver.output().count("connected again") > connections, 10.0, "the connection")
+    wait_for(lambda: not is_disconnected(), 10.0, "the connection")
     RejectsStopLate.connected.set()
     return stop.wait_for_result()[1]
 
@@ -353,7 +366,7 @@ def test_a_stop_goes_on_with_rtde_that_is_back_when_the_dashboard_server_has_fai
         try:
             for _ in range(20):  # the driver tries to connect once a second
                 robot_fixtures.make_ready(client)
-                result = stop_while_rtde_comes_back(driver, client, simulator)
+                result = stop_while_rtde_comes_back(client, simulator)
                 if RejectsStopLate.was_connected:
                     assert result.success, result.message
                     return

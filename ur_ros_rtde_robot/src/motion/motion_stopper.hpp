@@ -115,6 +115,7 @@ class MotionStopper {
   // What follows runs on the stopper's thread, without the mutex.
   Expected<StopReport> execute_guarded(const StopOptions & options);
   Expected<StopReport> execute(const StopOptions & options);
+  Expected<StopReport> execute_once(const StopOptions & options);
   Expected<StopReport> stop_without_rtde() const;
   bool is_done(const StopOptions & options) const;
   /// The arm is at rest by `means`. Ends also what may move it again.

@@ -20,6 +20,14 @@ bool stops_by_itself(const Sample & sample, Activities started)
 
 Expected<StopReport> MotionStopper::execute(const StopOptions & options)
 {
+  auto report = execute_once(options);
+  const bool is_back = !report && report.error().code == ErrorCode::link_lost && state_.link().connected;
+  // The connection can tell what stops the arm, or whether it has stopped.
+  return is_back ? execute_once(options) : report;
+}
+
+Expected<StopReport> MotionStopper::execute_once(const StopOptions & options)
+{
   const auto begin = tracker_.view().controller_time;
   const auto report = [&](const Expected<StopMeans> & means) -> Expected<StopReport> {
     if (!means) {
@@ -28,11 +36,7 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
     return StopReport{*means, tracker_.view().controller_time - begin};
   };
   if (!state_.link().connected) {
-    const auto without = stop_without_rtde();
-    if (!state_.link().connected) {
-      return without;
-    }
-    // The connection is back, and can tell what stops the arm, or whether it has stopped.
+    return stop_without_rtde();
   }
   const auto at_rest = [&](StopMeans means) {
     const auto settled = settle(means, options);

@@ -9,7 +9,7 @@ import threading
 import time
 from dataclasses import dataclass
 from enum import Enum
-from typing import Callable, Hashable, NamedTuple, Optional, Set
+from typing import Callable, Dict, Hashable, NamedTuple, Optional
 
 from geometry_msgs.msg import TwistStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -26,6 +26,7 @@ MAX_LINEAR, MAX_ANGULAR = 0.25, 1.0  # m/s, rad/s
 AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 STOPPED = "stopped: release the button, then hold it again"
 TWO_BUTTONS = "stopped: hold one button at a time; release both"
+RELEASE_TIME = 2.0  # s without messages, after which a button does not count as a second one: its release was lost
 
 
 class Frame(Enum):
@@ -104,9 +105,10 @@ class Jog:
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._publisher = control.node.create_publisher(TwistStamped, goals.full_name("twist"), qos)
         self._lock = threading.Lock()
+        self._clock = clock
         self._hold = Hold(clock)
         self._owner: Optional[_Button] = None  # of the hold
-        self._held: Set[_Button] = set()  # not released yet
+        self._held: Dict[_Button, float] = {}  # not released yet, with the time of the last message
 
     def set_stream_timeout(self, seconds: float) -> None:
         with self._lock:
@@ -117,11 +119,11 @@ class Jog:
         button = _Button(tab, axis, sign)
         with self._lock:
             is_first = button not in self._held
-            self._held.add(button)
+            self._held[button] = now = self._clock()
             if self._publisher.get_subscription_count() == 0:
                 self._end_hold()
                 return "no server of twist: does the driver run with this ROS_DOMAIN_ID?"
-            if any(other.tab == tab and other != button for other in self._held):
+            if any(other.tab == tab and other != button and now - last < RELEASE_TIME for other, last in self._held.items()):
                 self._end_hold_of(tab)
                 return TWO_BUTTONS
             if self._owner != button and self._hold.is_active:
@@ -142,13 +144,13 @@ class Jog:
     def release(self, tab: Hashable, axis: int, sign: float) -> None:
         """Ends the hold of the button."""
         with self._lock:
-            self._held.discard(_Button(tab, axis, sign))
+            self._held.pop(_Button(tab, axis, sign), None)
             self._end_hold_of(tab)
 
     def close(self, tab: Hashable) -> None:
         """Ends the holds of a tab."""
         with self._lock:
-            self._held = {button for button in self._held if button.tab != tab}
+            self._held = {button: last for button, last in self._held.items() if button.tab != tab}
             self._end_hold_of(tab)
 
     def stop(self) -> None:

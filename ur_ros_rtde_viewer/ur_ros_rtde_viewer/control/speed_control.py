@@ -13,6 +13,7 @@ from .goals import Goals, Phase, SentGoal
 
 SEND_PERIOD = 0.25  # s, the shortest time between two goals while the slider is dragged
 HOLD_TIME = 1.0  # s after a change, in which the value of the page stays
+ANSWER_TIMEOUT = 5.0  # s; a driver that has ended answers no goal
 
 
 class SpeedControl:
@@ -26,16 +27,18 @@ class SpeedControl:
         slider.enable(self._change)
 
     def _change(self, percent: int) -> None:
-        self._slider.is_held, self._wanted, self._changed = True, percent, self._clock()
+        self._slider.hold()
+        self._wanted, self._changed = percent, self._clock()
 
     def update(self, _state: RobotState) -> None:
         now = self._clock()
-        if self._goal is not None and self._goal.has_ended:
+        if self._goal is not None and (self._goal.has_ended or now - self._sent > ANSWER_TIMEOUT):
             self._finish(self._goal)
         if self._goal is not None:
             return
         if self._wanted is None:
-            self._slider.is_held = now - self._changed < HOLD_TIME
+            if self._slider.is_held and now - self._changed >= HOLD_TIME:
+                self._slider.release()
         elif now - self._sent >= SEND_PERIOD:
             self._send(self._wanted, now)
 
@@ -46,7 +49,8 @@ class SpeedControl:
     def _finish(self, goal: SentGoal) -> None:
         self._goal = None
         is_set = goal.phase == Phase.SUCCEEDED
-        self._slider.message.content = "" if is_set else f"Not set: {escaped(goal.message)}"
+        reason = escaped(goal.message) if goal.has_ended else f"the driver did not answer within {ANSWER_TIMEOUT:g} s"
+        self._slider.message.content = "" if is_set else f"Not set: {reason}"
         if not is_set and self._wanted is None:
             self._slider.show_reported()
 

@@ -24,6 +24,7 @@ class SpeedSlider:
         self._seen_since = -math.inf
         self._reported: Optional[int] = None  # percent
         self.is_held = False  # the value of the page is shown, not the reported one
+        self._has_changed = False  # the reported value, during the hold
 
     def enable(self, on_change: Callable[[int], None]) -> None:
         """Lets the page change the value. `on_change` is called with each new value in percent."""
@@ -46,9 +47,18 @@ class SpeedSlider:
         if seen != self._seen:
             self._seen, self._seen_since = seen, now
         if seen is not None and seen != self._reported and now - self._seen_since >= SETTLING_TIME:
-            self._reported = seen
+            self._reported, self._has_changed = seen, True
             if not self.is_held:
                 self.show_reported()
+
+    def hold(self) -> None:
+        self.is_held, self._has_changed = True, False
+
+    def release(self) -> None:
+        """Shows what the robot has reported during the hold. Some controllers report no change."""
+        self.is_held = False
+        if self._has_changed:
+            self.show_reported()
 
     def show_reported(self) -> None:
         if self._reported is not None:

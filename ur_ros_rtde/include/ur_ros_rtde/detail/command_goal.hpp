@@ -87,6 +87,7 @@ class CommandGoal : public Goal {
   const std::shared_ptr<const CommandDescription> command_;
   // When the goal was received:
   std::uint32_t stops_before_ = 0;  ///< CommandHost::stops()
+  bool program_may_begin_ = false;  ///< after the stop, by a request that was sent before
   Generation received_;
   std::optional<std::shared_future<Expected<StopReport>>> stopping_;  ///< of a stop
   std::string preempted_goal_;

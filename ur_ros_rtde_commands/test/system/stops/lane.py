@@ -376,10 +376,13 @@ class Lane:
         return case.event.keeps_program and case.waiting is None and not case.local and case.profile != "urcap"
 
     def _wait_until_program_runs(self) -> None:
-        """The driver starts its program again: from now on, an old goal could use it."""
+        """The driver starts its program again: from now on, an old goal could use it. An arm that is pressed on something while the driver
+        is held may come to a protective stop."""
         def runs():
             self._play()
             state = self.simulator.state()
+            if state["safety_mode"] == "PROTECTIVE_STOP":
+                self.simulator.unlock_protective_stop()
             return state["program"]["state"] == "PLAYING" and state["clients"]["rtde_control"] > 0
 
         wait_for(runs, READY_LIMIT, "the control program")

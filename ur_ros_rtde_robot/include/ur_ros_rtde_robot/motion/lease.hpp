@@ -29,6 +29,7 @@ struct Generation {
   std::uint32_t link = 0;    ///< Sample::link
   /// Of `ends`, those that this driver has brought about: a stop that ends the program, or a script.
   std::uint32_t ended_by_driver = 0;
+  std::uint32_t restarted_by_driver = 0;  ///< of `starts`: after a script
   bool operator==(const Generation &) const = default;
 };
 
