@@ -108,7 +108,8 @@ class DashboardRun {
   /// Publishes the answer to the query of an expected state, when it changes.
   virtual void publish_state(const std::string & state) = 0;
   Outcome start(const DashboardRequest & request, double timeout);
-  void wait_until_it_plays(const ExpectedState & playing);
+  /// The state in which it plays. Empty if it does not within 1 s.
+  std::optional<std::string> wait_until_it_plays(const ExpectedState & playing);
   Outcome take_answer(const std::string & line, const Expected<std::string> & answer, double timeout);
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);

@@ -176,28 +176,38 @@ Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
   if (!begins_with(answer_, request.reply)) {
     return rejection(request.line);
   }
-  if (request.starts == Starts::program) {
-    wait_until_it_plays(request.expected);
+  const auto playing = request.starts == Starts::program ? wait_until_it_plays(request.expected)
+                                                         : std::optional<std::string>();
+  if (auto why = stop_reason()) {
+    if (playing) {
+      static_cast<void>(connection_.request("stop", start_answer_timeout, {}));
+    }
+    return *why;
   }
   under_way->reset();
-  if (auto why = stop_reason()) {
-    return *why;
+  if (playing) {  // a stop may have ended it by now
+    return Outcome::success(fmt::format("{} is {}", request.expected.query, *playing));
   }
   return request.expected.query.empty() ? Outcome::success(answer_)
                                         : until(request.expected, deadline, timeout);
 }
 
-void DashboardRun::wait_until_it_plays(const ExpectedState & playing)
+std::optional<std::string> DashboardRun::wait_until_it_plays(const ExpectedState & playing)
 {
   const auto deadline = Clock::now() + begin_of_program_timeout;
   DashboardSession session(connection_.address());
   while (Clock::now() < deadline) {
-    const auto state = session.request(playing.query, begin_of_program_timeout, {});
-    if (!state || is_one_of(without_label(*state), playing.states)) {
-      return;
+    const auto answer = session.request(playing.query, begin_of_program_timeout, {});
+    if (!answer) {
+      return std::nullopt;
+    }
+    if (std::string state = without_label(*answer); is_one_of(state, playing.states)) {
+      publish_state(state);
+      return state;
     }
     std::this_thread::sleep_for(polling_interval);
   }
+  return std::nullopt;
 }
 
 Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
