@@ -188,6 +188,9 @@ Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
   if (playing) {  // a stop may have ended it by now
     return Outcome::success(fmt::format("{} is {}", request.expected.query, *playing));
   }
+  if (auto not_stopped = begin_start_ ? begin_start_() : nullptr; !not_stopped) {
+    return not_stopped.error();  // possibly before it was seen to play
+  }
   return request.expected.query.empty() ? Outcome::success(answer_)
                                         : until(request.expected, deadline, timeout);
 }
