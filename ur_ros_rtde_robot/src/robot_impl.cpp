@@ -209,8 +209,9 @@ Status Robot::Impl::ready_to_move() const
 Generation Robot::Impl::generation() const
 {
   const auto view = tracker.view();
-  return {view.program, interfaces.starts(), view.link, stopper.ended_programs() + scripts.ended_programs(),
-          scripts.restarts()};
+  return {view.program,       interfaces.starts(),
+          view.link,          stopper.ended_programs() + scripts.ended_programs(),
+          scripts.restarts(), interfaces.failed_starts()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

@@ -77,7 +77,8 @@ Status Robot::is_continued(const Generation & generation) const
   const Generation now = impl_->generation();
   const std::uint32_t by_driver = now.ended_by_driver - generation.ended_by_driver;
   const std::uint32_t restarts = now.restarted_by_driver - generation.restarted_by_driver;
-  const bool continued = now.link == generation.link && now.ends - generation.ends == by_driver &&
+  const bool continued = now.link == generation.link && now.failed_starts == generation.failed_starts &&
+                         now.ends - generation.ends == by_driver &&
                          (by_driver > 0 || now.starts - generation.starts <= restarts);
   return continued ? Status() : is_current(generation);
 }

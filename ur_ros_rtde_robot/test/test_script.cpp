@@ -466,6 +466,23 @@ TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
   EXPECT_TRUE(eventually([&] { return !robot->is_continued(received); })) << "an operator has stopped it";
 }
 
+TEST_F(ScriptTest, EndsAGoalThatWaitsForTheArmIfTheControlProgramDoesNotReturnAtOnce)
+{
+  make_both();
+  Generation received;
+  ScriptOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {  // the control program has yielded
+    received = robot->generation();
+    // It begins, but does not answer.
+    controller.control(
+        {{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "control"}, {"count", 100000}});
+    return stopped_by_the_driver();
+  };
+  EXPECT_EQ(run_script(turning(), options).end, ScriptEnd::rejected);
+  ASSERT_TRUE(becomes_ready());
+  EXPECT_FALSE(robot->is_continued(received)) << "an operator may have stopped it";
+}
+
 TEST_F(ScriptTest, IsNotSentAsSecondaryProgramAfterACancelThatTheThreadHasNotSeen)
 {
   make_both();

@@ -213,10 +213,12 @@ Status RtdeInterfaces::start_control(const ControllerVersion & version, const st
     }
     auto started = start_watchdog(*control);
     if (!started) {
+      ++failed_starts_;
       close_control();
     }
     return started;
   } catch (const std::exception & error) {
+    ++failed_starts_;
     close_control();
     extensions_checked_ = false;  // a URCap may have been removed
     return tl::unexpected(connection_error("the control program cannot be started", error));
@@ -274,9 +276,10 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
     const std::lock_guard lock(mutex_);
     control = pending_;
   }
+  const bool is_connected = control && control->isConnected();
   bool works = false;
   try {
-    if (control && control->isConnected()) {
+    if (is_connected) {
       // Other threads may have kept the interface.
       const HeldLock lock = acquire(*control_lock_, "control interface", answer_timeout);
       works = control->reuploadScript();
@@ -298,6 +301,7 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
     }
   }
   if (control && !works) {
+    failed_starts_ += is_connected ? 1 : 0;
     disconnect(*control);
   }
   return works;

@@ -83,6 +83,8 @@ class RtdeInterfaces {
                              std::chrono::milliseconds timeout) const;
   /// Incremented when a control program becomes active, and when it is given up.
   std::uint32_t starts() const { return starts_; }
+  /// Incremented when a control program that was sent does not answer.
+  std::uint32_t failed_starts() const { return failed_starts_; }
   /// The control program of the active or pending connection has missed its heartbeat although no command
   /// delays it: a program that runs is another one.
   bool control_heartbeat_lost() const;
@@ -118,6 +120,7 @@ class RtdeInterfaces {
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
   std::atomic<std::uint32_t> starts_ = 0;
+  std::atomic<std::uint32_t> failed_starts_ = 0;
   std::atomic<double> watchdog_frequency_ = 0.0;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;
   std::atomic<std::uint32_t> io_starts_ = 0;
