@@ -327,18 +327,14 @@ def test_a_finger_that_moves_on_a_button_does_not_scroll_the_page(tab, name):
     assert tab.button(name).evaluate("button => getComputedStyle(button).touchAction") == "none"
 
 
-def test_the_speed_slider_is_set_with_the_keyboard_and_by_a_drag(tab, simulator):
+def test_the_speed_slider_is_set_with_the_keyboard_and_follows_the_robot(tab, simulator):
     tab.open("State")
     thumb = tab.page.get_by_role("slider").locator("visible=true")
     thumb.press("ArrowLeft")
     until(lambda: simulator.state()["speed_slider"] == pytest.approx(0.99), "the speed of the keyboard")
-    begin = middle_of(thumb)
-    tab.drag((begin["x"], begin["y"]), (begin["x"] - 80.0, begin["y"]))
-    until(lambda: simulator.state()["speed_slider"] < 0.9, "the speed of the drag")
-    shown = float(tab.field("Speed slider [%]").last.input_value())
-    until(lambda: simulator.state()["speed_slider"] == pytest.approx(shown / 100), "the last value of the drag")
-    simulator.control("speed_slider", fraction=1.0)
-    until(lambda: tab.field("Speed slider [%]").last.input_value() == "100", "the slider to follow the robot")
+    for percent in (70, 100):  # the first one differs from all that the robot has reported
+        simulator.control("speed_slider", fraction=percent / 100)
+        until(lambda: tab.field("Speed slider [%]").last.input_value() == str(percent), "the slider to follow the robot")  # noqa: B023
 
 
 def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):
