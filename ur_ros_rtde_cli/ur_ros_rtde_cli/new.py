@@ -21,7 +21,7 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 def _checked(what: str, name: str) -> str:
     if not _NAME.fullmatch(name):
         raise CliError(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
-                              "letter, as in pick_part")
+                       "letter, as in pick_part")
     return name
 
 

@@ -43,6 +43,20 @@ struct ScriptTest : RobotFixture {
     return options;
   }
 
+  /// Stops a script when the control program has yielded to it, and returns the generation of that moment.
+  Generation stop_before_begin(const std::function<void()> & event)
+  {
+    Generation received;
+    ScriptOptions options;
+    options.stop_reason = [&]() -> std::optional<Error> {
+      received = robot->generation();
+      event();
+      return stopped_by_the_driver();
+    };
+    EXPECT_EQ(run_script(turning(), options).end, ScriptEnd::rejected);
+    return received;
+  }
+
   bool plays() { return controller.state().at("program").at("state") == "PLAYING"; }
 
   bool turns() { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }
@@ -452,13 +466,7 @@ TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
 TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
 {
   make_both();
-  Generation received;
-  ScriptOptions options;
-  options.stop_reason = [&]() -> std::optional<Error> {  // the control program has yielded
-    received = robot->generation();
-    return stopped_by_the_driver();
-  };
-  EXPECT_EQ(run_script(turning(), options).end, ScriptEnd::rejected);
+  const Generation received = stop_before_begin([] {});
   ASSERT_TRUE(becomes_ready());
   const Status continued = robot->is_continued(received);
   EXPECT_TRUE(continued) << continued.error().message;
@@ -469,16 +477,10 @@ TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
 TEST_F(ScriptTest, EndsAGoalThatWaitsForTheArmIfTheControlProgramDoesNotReturnAtOnce)
 {
   make_both();
-  Generation received;
-  ScriptOptions options;
-  options.stop_reason = [&]() -> std::optional<Error> {  // the control program has yielded
-    received = robot->generation();
-    // It begins, but does not answer.
+  const Generation received = stop_before_begin([&] {  // it begins, but does not answer
     controller.control(
         {{"command", "lose_commands"}, {"which", "rtde"}, {"clients", "control"}, {"count", 100000}});
-    return stopped_by_the_driver();
-  };
-  EXPECT_EQ(run_script(turning(), options).end, ScriptEnd::rejected);
+  });
   ASSERT_TRUE(becomes_ready());
   EXPECT_FALSE(robot->is_continued(received)) << "an operator may have stopped it";
 }

@@ -1,5 +1,6 @@
 """Bringing the robot into operation from any state, and powering it down."""
 
+import contextlib
 import socket
 import socketserver
 import threading
@@ -233,45 +234,42 @@ class DashboardProxy(socketserver.ThreadingTCPServer):
     daemon_threads = True
 
 
-def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes):
-    """Without a watchdog, only the dashboard server could end the script."""
+@contextlib.contextmanager
+def robot_behind(handler, addresses, processes, namespace, *parameters):
+    """Yields a client of a driver that is ready, and its simulator. `handler` passes on what the driver sends to the dashboard server."""
     simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), RejectsStop) as proxy:
+    with DashboardProxy((addresses[1], DASHBOARD_PORT), handler) as proxy:
         threading.Thread(target=proxy.serve_forever, daemon=True).start()
-        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "watchdog_frequency:=0.0",
-                                      "plugins:=[move_j,send_script,stand_down]", namespace="unstoppable"))
-        client = Client("unstoppable")
+        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", *parameters, namespace=namespace))
+        client = Client(namespace)
         try:
             robot_fixtures.make_ready(client)
-            assert client.send(SendScript, "send_script", script=f"movej({home_plus(3.0)}, a=1, v=0.2)").accepted
-            wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
-            result = client.send(DashboardCommand, "stand_down").succeeded()
-            assert "all attempts to stop the arm have failed" in result.message, result.message
-            assert simulator.state()["robot_mode"] == "POWER_OFF" and simulator.is_at_rest()
-        finally:
-            client.close()
-            driver.stop()
-            proxy.shutdown()
-
-
-@pytest.fixture
-def make_ready_held(addresses, processes):
-    """A client and the simulator behind a proxy, with the arm powered off."""
-    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), HoldsMakeReady) as proxy:
-        threading.Thread(target=proxy.serve_forever, daemon=True).start()
-        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e",
-                                      "plugins:=[move_j,make_ready,stand_down,dashboard/power_off]", namespace="held"))
-        client = Client("held")
-        try:
-            HoldsMakeReady.arm("")
-            robot_fixtures.make_ready(client)
-            power_off(client, simulator)
             yield client, simulator
         finally:
             client.close()
             driver.stop()
             proxy.shutdown()
+
+
+def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes):
+    """Without a watchdog, only the dashboard server could end the script."""
+    with robot_behind(RejectsStop, addresses, processes, "unstoppable", "watchdog_frequency:=0.0",
+                      "plugins:=[move_j,send_script,stand_down]") as (client, simulator):
+        assert client.send(SendScript, "send_script", script=f"movej({home_plus(3.0)}, a=1, v=0.2)").accepted
+        wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
+        result = client.send(DashboardCommand, "stand_down").succeeded()
+        assert "all attempts to stop the arm have failed" in result.message, result.message
+        assert simulator.state()["robot_mode"] == "POWER_OFF" and simulator.is_at_rest()
+
+
+@pytest.fixture
+def make_ready_held(addresses, processes):
+    """A client and the simulator behind a proxy, with the arm powered off."""
+    HoldsMakeReady.arm("")
+    with robot_behind(HoldsMakeReady, addresses, processes, "held",
+                      "plugins:=[move_j,make_ready,stand_down,dashboard/power_off]") as (client, simulator):
+        power_off(client, simulator)
+        yield client, simulator
 
 
 @pytest.mark.parametrize("command, held", [
@@ -309,37 +307,27 @@ def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simu
     (False, Stop, "stop"), (False, DashboardCommand, "dashboard/stop"),
     (True, Stop, "stop"), (True, DashboardCommand, "dashboard/stop"), (True, None, "")])
 def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processes, is_canceled, action, name):
-    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
     HoldsPlay.arm()
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), HoldsPlay) as proxy:
-        threading.Thread(target=proxy.serve_forever, daemon=True).start()
-        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "restart_program:=false",
-                                      "plugins:=[move_j,stop,dashboard/stop,dashboard/play]", namespace="played"))
-        client = Client("played")
-        try:
-            robot_fixtures.make_ready(client)
-            client.send(DashboardCommand, "dashboard/stop").succeeded()
-            simulator.control("store_program", name="moves.urp", script=f"movej({home_plus(3.0)}, a=1, v=0.2)", load=True)
-            play = client.send(DashboardCommand, "dashboard/play")
-            assert HoldsPlay.holding.wait(10.0)
-            if is_canceled:
-                play.cancel()
-            stop = client.send(action, name) if action else None
-            assert stop is None or stop.accepted
-            HoldsPlay.stopped.set()
-            if stop:
-                stop.succeeded()
-                assert action is not Stop or simulator.is_at_rest()
-            result = play.wait_for_result()[1]  # the stop may have ended the program before it was seen to play
-            assert (result.success or result.error_code == ErrorCode.PREEMPTED) is not is_canceled, result.message
-            wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the end of the program")
-            end = simulator.state()["cycle"] + 100
-            wait_for(lambda: simulator.state()["cycle"] > end, 10.0, "cycles in which the arm would move")
-            assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
-        finally:
-            client.close()
-            driver.stop()
-            proxy.shutdown()
+    with robot_behind(HoldsPlay, addresses, processes, "played", "restart_program:=false",
+                      "plugins:=[move_j,stop,dashboard/stop,dashboard/play]") as (client, simulator):
+        client.send(DashboardCommand, "dashboard/stop").succeeded()
+        simulator.control("store_program", name="moves.urp", script=f"movej({home_plus(3.0)}, a=1, v=0.2)", load=True)
+        play = client.send(DashboardCommand, "dashboard/play")
+        assert HoldsPlay.holding.wait(10.0)
+        if is_canceled:
+            play.cancel()
+        stop = client.send(action, name) if action else None
+        assert stop is None or stop.accepted
+        HoldsPlay.stopped.set()
+        if stop:
+            stop.succeeded()
+            assert action is not Stop or simulator.is_at_rest()
+        result = play.wait_for_result()[1]  # the stop may have ended the program before it was seen to play
+        assert (result.success or result.error_code == ErrorCode.PREEMPTED) is not is_canceled, result.message
+        wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the end of the program")
+        end = simulator.state()["cycle"] + 100
+        wait_for(lambda: simulator.state()["cycle"] > end, 10.0, "cycles in which the arm would move")
+        assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
 
 
 def stop_while_rtde_comes_back(client, simulator):
@@ -361,21 +349,12 @@ def stop_while_rtde_comes_back(client, simulator):
 
 
 def test_a_stop_goes_on_with_rtde_that_is_back_when_the_dashboard_server_has_failed(addresses, processes):
-    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), RejectsStopLate) as proxy:
-        threading.Thread(target=proxy.serve_forever, daemon=True).start()
-        RejectsStopLate.arm()
-        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", "plugins:=[move_j,stop]", namespace="interrupted"))
-        client = Client("interrupted")
-        try:
-            for _ in range(20):  # the driver tries to connect once a second
-                robot_fixtures.make_ready(client)
-                result = stop_while_rtde_comes_back(client, simulator)
-                if RejectsStopLate.was_connected:
-                    assert result.success, result.message
-                    return
-            pytest.fail("the connection was never back in time")
-        finally:
-            client.close()
-            driver.stop()
-            proxy.shutdown()
+    RejectsStopLate.arm()
+    with robot_behind(RejectsStopLate, addresses, processes, "interrupted", "plugins:=[move_j,stop]") as (client, simulator):
+        for _ in range(20):  # the driver tries to connect once a second
+            robot_fixtures.make_ready(client)
+            result = stop_while_rtde_comes_back(client, simulator)
+            if RejectsStopLate.was_connected:
+                assert result.success, result.message
+                return
+        pytest.fail("the connection was never back in time")
