@@ -8,7 +8,8 @@ import pytest
 from ament_index_python.packages import get_package_share_directory
 from catkin_pkg.packages import find_packages
 from colcon_core import package_discovery, package_identification
-from ur_tools import new, packages
+from ur_ros_rtde_cli import new
+from ur_tools import packages
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
