@@ -209,9 +209,10 @@ Status Robot::Impl::ready_to_move() const
 Generation Robot::Impl::generation() const
 {
   const auto view = tracker.view();
-  return {view.program,       interfaces.starts(),
-          view.link,          stopper.ended_programs() + scripts.ended_programs(),
-          scripts.restarts(), interfaces.failed_starts()};
+  const auto starts = interfaces.starts();
+  return {view.program,        starts.number,
+          view.link,           stopper.ended_programs() + scripts.ended_programs(),
+          starts.after_script, interfaces.failed_starts()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

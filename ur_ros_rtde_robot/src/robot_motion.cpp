@@ -26,16 +26,18 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::mill
   const auto deadline = Permit::Clock::now() + timeout;
   const Generation begin = generation();
   bool was_stopping = false;
+  bool had_yielded = false;  // the control program, to a script
   const auto admit = [&] {
     was_stopping = impl_->stopper.is_stopping();
+    had_yielded = impl_->manager.control_owner() == ControlOwner::script;
     return impl_->admit(claim);
   };
   const auto retry = [&] {
     if (was_stopping) {
       return impl_->stopper.wait_until_idle(deadline, stop);
     }
-    const bool ended_by_driver = generation().ended_by_driver != begin.ended_by_driver;
-    return ended_by_driver && is_continued(begin) && impl_->wait_for_control_program(deadline);
+    const bool returns = had_yielded || generation().ended_by_driver != begin.ended_by_driver;
+    return returns && is_continued(begin) && impl_->wait_for_control_program(deadline);
   };
   return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, stop);
 }

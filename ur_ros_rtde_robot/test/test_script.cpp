@@ -474,6 +474,29 @@ TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
   EXPECT_TRUE(eventually([&] { return !robot->is_continued(received); })) << "an operator has stopped it";
 }
 
+TEST_F(ScriptTest, DoesNotEndAGoalThatComesWhileTheControlProgramReturns)
+{
+  make_both();
+  std::vector<Generation> received;
+  std::jthread client;
+  stop_before_begin([&] {
+    client = std::jthread([&](const std::stop_token & end) {
+      while (!end.stop_requested()) {
+        received.push_back(robot->generation());
+        std::this_thread::sleep_for(1ms);
+      }
+    });
+  });
+  EXPECT_TRUE(eventually([&] { return robot->generation().restarted_by_driver == 1; }));
+  client.request_stop();
+  client.join();
+  ASSERT_TRUE(becomes_ready());
+  for (const Generation & generation : received) {
+    const Status continued = robot->is_continued(generation);
+    ASSERT_TRUE(continued) << continued.error().message;
+  }
+}
+
 TEST_F(ScriptTest, EndsAGoalThatWaitsForTheArmIfTheControlProgramDoesNotReturnAtOnce)
 {
   make_both();

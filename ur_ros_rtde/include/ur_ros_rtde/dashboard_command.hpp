@@ -103,6 +103,11 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     }
     return ready;
   }
+  /// Not while a program that it has started may begin.
+  std::optional<Status> stopped() const override
+  {
+    return host_.has_startup_requests() ? std::nullopt : std::make_optional(Status());
+  }
   Outcome execute() override
   {
     run_.emplace(

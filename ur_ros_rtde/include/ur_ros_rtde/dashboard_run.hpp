@@ -34,7 +34,7 @@ constexpr MinVersion never{~0U, 0};
 enum class Starts {
   nothing,
   power,    ///< a stop that comes later waits for the answer
-  program,  ///< it may move the arm: a stop that comes later waits until it plays, at most 1 s, and ends it
+  program,  ///< it may move the arm: a stop that comes later, and a goal that fails, end it
 };
 
 /// A command or query to the dashboard server (UR, "Dashboard Server e-Series, port 29999", "… CB-Series").
@@ -107,12 +107,16 @@ class DashboardRun {
   using Clock = std::chrono::steady_clock;
   /// Publishes the answer to the query of an expected state, when it changes.
   virtual void publish_state(const std::string & state) = 0;
+  /// Ends a program that it may have started if it does not succeed.
   Outcome start(const DashboardRequest & request, double timeout);
-  /// The state in which it plays. Empty if it does not within 1 s.
-  std::optional<std::string> wait_until_it_plays(const ExpectedState & playing);
+  Expected<std::shared_ptr<void>> begin_start();
+  /// Why what is being started must not go on: the goal has to stop, or a stop came later than the goal.
+  std::optional<Error> overtaken();
+  void end_program();
   Outcome take_answer(const std::string & line, const Expected<std::string> & answer, double timeout);
   Outcome rejection(const std::string & line);
-  Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout);
+  Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout,
+                bool starts_program = false);
 
   DashboardConnection & connection_;
   std::shared_ptr<const StopRequest> stop_request_;

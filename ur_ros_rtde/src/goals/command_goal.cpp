@@ -29,15 +29,20 @@ Status query_dashboard(const Robot & robot)
   return mode ? Status() : tl::unexpected(mode.error());
 }
 
-/// Whether a program plays that is not of this driver. The samples show what the dashboard server has told
-/// some cycles later.
-bool foreign_program_plays(const Robot & robot)
+/// Whether a program may play that is not of this driver. The samples show later what the dashboard server
+/// has told; without samples, nothing shows it.
+bool foreign_program_may_play(const Robot & robot)
 {
-  constexpr int cycles = 5;
+  constexpr milliseconds longest_delay{100};
+  const auto deadline = std::chrono::steady_clock::now() + longest_delay;
   Sample sample = robot.latest().value_or(Sample{});
-  for (int i = 0; i < cycles && robot.wait_for_next(sample, milliseconds(100)); ++i) {
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (!robot.wait_for_next(sample, longest_delay) ||
+        (sample.is_program_running() && !robot.ready_to_move())) {
+      return true;
+    }
   }
-  return sample.is_program_running() && !robot.ready_to_move();
+  return false;
 }
 
 /// The failure may be a consequence of a lost connection or of an ended program.
@@ -276,7 +281,7 @@ Outcome CommandGoal::execute()
     if (command_->only_stops()) {
       if (program_may_begin_) {
         command_->host.wait_for_startup_requests();
-        if (foreign_program_plays(robot())) {
+        if (foreign_program_may_play(robot())) {
           begin_stop();  // after the first one
         }
       }

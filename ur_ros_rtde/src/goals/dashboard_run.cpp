@@ -22,9 +22,11 @@ constexpr std::string_view not_understood = "could not understand";
 constexpr std::chrono::milliseconds polling_interval{50};
 constexpr std::chrono::milliseconds answer_timeout{5000};
 constexpr std::chrono::milliseconds confirmed_state_timeout{1000};
-/// Together shorter than the wait of a stop (startup_request_timeout in plugin_host.cpp).
-constexpr std::chrono::milliseconds start_answer_timeout{2000};
+/// Of a goal that has to end, together shorter than the wait of a stop (startup_request_timeout in
+/// plugin_host.cpp): for the answer, for the begin of the program, and for the end of the program.
+constexpr std::chrono::milliseconds late_answer_timeout{1500};
 constexpr std::chrono::milliseconds begin_of_program_timeout{1000};
+constexpr std::chrono::milliseconds end_of_program_timeout{500};
 constexpr std::chrono::hours longest_wait{24 * 365};
 
 /// `timeout` in s.
@@ -160,57 +162,66 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
   return expected.query.empty() ? Outcome::success(answer_) : until(expected, deadline, timeout);
 }
 
-/// A goal that has to end still waits for the answer: the request may take effect until then.
 Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
 {
   const auto deadline = Clock::now() + to_duration(timeout);
-  auto under_way = begin_start_ ? begin_start_() : nullptr;
+  auto under_way = begin_start();
   if (!under_way) {
     return under_way.error();
   }
+  DashboardSession session(connection_.address());
   const auto answer =
-      connection_.request(request.line, std::min(to_duration(timeout), start_answer_timeout), {});
-  if (Outcome answered = take_answer(request.line, answer, timeout); !answered) {
-    return answered;
-  }
-  if (!begins_with(answer_, request.reply)) {
+      session.request(request.line, to_duration(timeout), stop_request_->token(), late_answer_timeout);
+  Outcome outcome = take_answer(request.line, answer, timeout);
+  if (outcome && !begins_with(answer_, request.reply)) {
+    under_way->reset();
     return rejection(request.line);
   }
-  const auto playing = request.starts == Starts::program ? wait_until_it_plays(request.expected)
-                                                         : std::optional<std::string>();
-  if (auto why = stop_reason()) {
-    if (playing) {
-      static_cast<void>(connection_.request("stop", start_answer_timeout, {}));
-    }
-    return *why;
+  const bool may_play = request.starts == Starts::program &&
+                        (answer || answer.error().code != ErrorCode::canceled);  // before it was sent
+  if (auto why = overtaken()) {
+    outcome = *std::move(why);
   }
-  under_way->reset();
-  if (playing) {  // a stop may have ended it by now
-    return Outcome::success(fmt::format("{} is {}", request.expected.query, *playing));
+  if (!may_play) {
+    under_way->reset();
   }
-  if (auto not_stopped = begin_start_ ? begin_start_() : nullptr; !not_stopped) {
-    return not_stopped.error();  // possibly before it was seen to play
+  if (outcome && !request.expected.query.empty()) {
+    outcome = until(request.expected, deadline, timeout, request.starts == Starts::program);
   }
-  return request.expected.query.empty() ? Outcome::success(answer_)
-                                        : until(request.expected, deadline, timeout);
+  if (may_play && !outcome) {
+    end_program();
+  }
+  return outcome;
 }
 
-std::optional<std::string> DashboardRun::wait_until_it_plays(const ExpectedState & playing)
+Expected<std::shared_ptr<void>> DashboardRun::begin_start()
+{
+  return begin_start_ ? begin_start_() : nullptr;
+}
+
+std::optional<Error> DashboardRun::overtaken()
+{
+  if (auto why = stop_reason()) {
+    return why;
+  }
+  const auto start = begin_start();
+  return start ? std::nullopt : std::make_optional(start.error());
+}
+
+/// A program that has not begun cannot be stopped.
+void DashboardRun::end_program()
 {
   const auto deadline = Clock::now() + begin_of_program_timeout;
   DashboardSession session(connection_.address());
-  while (Clock::now() < deadline) {
-    const auto answer = session.request(playing.query, begin_of_program_timeout, {});
-    if (!answer) {
-      return std::nullopt;
-    }
-    if (std::string state = without_label(*answer); is_one_of(state, playing.states)) {
-      publish_state(state);
-      return state;
+  for (auto now = Clock::now(); now < deadline; now = Clock::now()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - now);
+    const auto state = session.request("programState", left);
+    if (!state || begins_with(*state, "PLAYING")) {
+      break;
     }
     std::this_thread::sleep_for(polling_interval);
   }
-  return std::nullopt;
+  static_cast<void>(session.request("stop", end_of_program_timeout));
 }
 
 Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
@@ -236,7 +247,8 @@ Outcome DashboardRun::rejection(const std::string & line)
   return Outcome::failure(ErrorCode::rejected_by_robot, answer);
 }
 
-Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point deadline, double timeout)
+Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point deadline, double timeout,
+                            bool starts_program)
 {
   std::string shown;
   if (expected.is_confirmed_by_answer) {
@@ -246,7 +258,7 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
   while (true) {
     const auto answer = session.request(expected.query, answer_timeout, stop_request_->token());
     if (!answer) {
-      throw RobotError(answer.error());
+      return stop_reason().value_or(answer.error());
     }
     const std::string state = without_label(*answer);
     if (state != shown) {
@@ -267,6 +279,9 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
                       expected.query, state, timeout, fmt::join(expected.states, " or "), answer_));
     }
     if (auto why = sleep_for(polling_interval)) {
+      return *why;
+    }
+    if (auto why = starts_program ? overtaken() : std::nullopt) {
       return *why;
     }
   }

@@ -1,15 +1,13 @@
 """Bringing the robot into operation from any state, and powering it down."""
 
-import contextlib
-import socket
-import socketserver
 import threading
 
 import pytest
 import robot_fixtures
 from action_msgs.msg import GoalStatus
 from arm_state import home_plus, wait_until_moving
-from support import HOME, Client, Simulator, start_node, wait_for
+from dashboard_proxy import PassesOn, robot_behind
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
@@ -143,25 +141,6 @@ def test_stand_down_preempts_the_running_motion(robot, simulator):
     make_ready(robot)
 
 
-DASHBOARD_PORT = 29999
-PORT_BEHIND = 29998  # of the simulator's dashboard server
-
-
-class PassesOn(socketserver.StreamRequestHandler):
-    """Passes everything on to the dashboard server of the simulator."""
-
-    def handle(self):
-        with socket.create_connection((self.server.server_address[0], PORT_BEHIND)) as self.behind, \
-                self.behind.makefile("rb") as self.answers:
-            self.wfile.write(self.answers.readline())
-            for line in self.rfile:
-                self.wfile.write(self.answer(line))
-
-    def answer(self, line):
-        self.behind.sendall(line)
-        return self.answers.readline()
-
-
 class RejectsStop(PassesOn):
     def answer(self, line):
         return b"Failed to execute: stop\n" if line.strip() == b"stop" else super().answer(line)
@@ -215,42 +194,6 @@ class RejectsStopLate(RejectsStop):
         return super().answer(line)
 
 
-class HoldsPlay(PassesOn):
-    """Holds `play` until the client has sent a stop."""
-
-    @classmethod
-    def arm(cls):
-        cls.holding, cls.stopped = threading.Event(), threading.Event()
-
-    def answer(self, line):
-        if line.strip() == b"play":
-            self.holding.set()
-            self.stopped.wait(1.5)  # the driver waits for 2 s
-        return super().answer(line)
-
-
-class DashboardProxy(socketserver.ThreadingTCPServer):
-    allow_reuse_address = True
-    daemon_threads = True
-
-
-@contextlib.contextmanager
-def robot_behind(handler, addresses, processes, namespace, *parameters):
-    """Yields a client of a driver that is ready, and its simulator. `handler` passes on what the driver sends to the dashboard server."""
-    simulator = processes(Simulator(addresses[1], "--ports", f"dashboard={PORT_BEHIND}"))
-    with DashboardProxy((addresses[1], DASHBOARD_PORT), handler) as proxy:
-        threading.Thread(target=proxy.serve_forever, daemon=True).start()
-        driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", *parameters, namespace=namespace))
-        client = Client(namespace)
-        try:
-            robot_fixtures.make_ready(client)
-            yield client, simulator
-        finally:
-            client.close()
-            driver.stop()
-            proxy.shutdown()
-
-
 def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes):
     """Without a watchdog, only the dashboard server could end the script."""
     with robot_behind(RejectsStop, addresses, processes, "unstoppable", "watchdog_frequency:=0.0",
@@ -301,33 +244,6 @@ def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simu
     robot.send(DashboardCommand, "dashboard/play").succeeded()
     goal.succeeded()
     assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.5, abs=0.01)
-
-
-@pytest.mark.parametrize("is_canceled, action, name", [
-    (False, Stop, "stop"), (False, DashboardCommand, "dashboard/stop"),
-    (True, Stop, "stop"), (True, DashboardCommand, "dashboard/stop"), (True, None, "")])
-def test_a_stop_outlasts_dashboard_play_that_was_sent_before(addresses, processes, is_canceled, action, name):
-    HoldsPlay.arm()
-    with robot_behind(HoldsPlay, addresses, processes, "played", "restart_program:=false",
-                      "plugins:=[move_j,stop,dashboard/stop,dashboard/play]") as (client, simulator):
-        client.send(DashboardCommand, "dashboard/stop").succeeded()
-        simulator.control("store_program", name="moves.urp", script=f"movej({home_plus(3.0)}, a=1, v=0.2)", load=True)
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert HoldsPlay.holding.wait(10.0)
-        if is_canceled:
-            play.cancel()
-        stop = client.send(action, name) if action else None
-        assert stop is None or stop.accepted
-        HoldsPlay.stopped.set()
-        if stop:
-            stop.succeeded()
-            assert action is not Stop or simulator.is_at_rest()
-        result = play.wait_for_result()[1]  # the stop may have ended the program before it was seen to play
-        assert (result.success or result.error_code == ErrorCode.PREEMPTED) is not is_canceled, result.message
-        wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the end of the program")
-        end = simulator.state()["cycle"] + 100
-        wait_for(lambda: simulator.state()["cycle"] > end, 10.0, "cycles in which the arm would move")
-        assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
 
 
 def stop_while_rtde_comes_back(client, simulator):

@@ -19,7 +19,7 @@ constexpr std::size_t max_answer_size = 64 * 1024;
 
 }  // namespace
 
-Expected<std::string> DashboardSession::next_line(const WaitLimit & wait_limit)
+Expected<std::string> DashboardSession::next_line(WaitLimit wait_limit)
 {
   std::array<std::byte, 512> bytes;
   for (auto end = received_.find('\n'); true; end = received_.find('\n')) {
@@ -29,10 +29,14 @@ Expected<std::string> DashboardSession::next_line(const WaitLimit & wait_limit)
       line.erase(line.find_last_not_of(" \t\r") + 1);
       return printable(line);
     }
-    if (wait_limit.stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "the request to the dashboard server was canceled");
-    }
     const auto now = Clock::now();
+    if (wait_limit.stop.stop_requested()) {
+      if (wait_limit.grace == std::chrono::milliseconds::zero()) {
+        return failure(ErrorCode::canceled, "the request to the dashboard server was canceled");
+      }
+      wait_limit = {
+          .deadline = std::min(wait_limit.deadline, now + wait_limit.grace), .stop = {}, .grace = {}};
+    }
     if (now >= wait_limit.deadline) {
       return failure(ErrorCode::timeout, "the dashboard server has not answered");
     }
@@ -58,7 +62,8 @@ Status DashboardSession::connect(const WaitLimit & wait_limit)
   }
   socket_ = std::move(*socket);
   received_.clear();
-  return next_line(wait_limit).map([](const std::string &) {});  // the greeting
+  const WaitLimit of_greeting{wait_limit.deadline, wait_limit.stop, {}};
+  return next_line(of_greeting).map([](const std::string &) {});
 }
 
 Expected<std::string> DashboardSession::ask(const std::string & line, const WaitLimit & wait_limit)
@@ -78,9 +83,9 @@ Expected<std::string> DashboardSession::ask(const std::string & line, const Wait
 }
 
 Expected<std::string> DashboardSession::request(const std::string & line, std::chrono::milliseconds timeout,
-                                                const std::stop_token & stop)
+                                                const std::stop_token & stop, std::chrono::milliseconds grace)
 {
-  const WaitLimit wait_limit{Clock::now() + timeout, stop};
+  const WaitLimit wait_limit{Clock::now() + timeout, stop, grace};
   const bool was_connected = socket_.has_value();
   auto answer = ask(line, wait_limit);
   if (!answer && was_connected && answer.error().code == ErrorCode::link_lost) {

@@ -19,18 +19,19 @@ class DashboardSession {
 
   /// Sends a line and returns the answer without the line end. Connects with the first request, after an
   /// error, and if the robot has closed the connection. Errors: link_lost; timeout after `timeout`; canceled
-  /// if a stop is requested.
+  /// if a stop is requested. `grace`: how long the answer to a line that was sent is waited for after that.
   Expected<std::string> request(const std::string & line, std::chrono::milliseconds timeout,
-                                const std::stop_token & stop = {});
+                                const std::stop_token & stop = {}, std::chrono::milliseconds grace = {});
 
  private:
   struct WaitLimit {
     TcpSocket::Clock::time_point deadline;
     std::stop_token stop;
+    std::chrono::milliseconds grace{};
   };
   Status connect(const WaitLimit & wait_limit);
   Expected<std::string> ask(const std::string & line, const WaitLimit & wait_limit);
-  Expected<std::string> next_line(const WaitLimit & wait_limit);
+  Expected<std::string> next_line(WaitLimit wait_limit);
 
   std::string address_;
   std::optional<TcpSocket> socket_;

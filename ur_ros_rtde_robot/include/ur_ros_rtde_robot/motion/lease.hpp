@@ -29,7 +29,7 @@ struct Generation {
   std::uint32_t link = 0;    ///< Sample::link
   /// Of `ends`, those that this driver has brought about: a stop that ends the program, or a script.
   std::uint32_t ended_by_driver = 0;
-  std::uint32_t restarted_by_driver = 0;  ///< of `starts`: after a script
+  std::uint32_t restarted_by_driver = 0;  ///< of `starts`: the control program goes on after a script
   /// Starts of the control program that have failed. An operator may have stopped it before a sample has
   /// shown it running.
   std::uint32_t failed_starts = 0;

@@ -71,7 +71,7 @@ Status InputRegisters::clear_trigger()
 
 Status InputRegisters::write_trigger(int id, const std::optional<Io> & io)
 {
-  const Trigger trigger{id, interfaces_.starts()};
+  const Trigger trigger{id, interfaces_.starts().number};
   if (id != 0) {
     trigger_ = trigger;  // even if it turns out that it was not sent
   }
@@ -87,7 +87,7 @@ Status InputRegisters::write_trigger(int id, const std::optional<Io> & io)
 bool InputRegisters::extension_started() const
 {
   const Trigger trigger = trigger_;
-  return trigger.id != 0 && trigger.program == interfaces_.starts();
+  return trigger.id != 0 && trigger.program == interfaces_.starts().number;
 }
 
 }  // namespace ur_ros_rtde

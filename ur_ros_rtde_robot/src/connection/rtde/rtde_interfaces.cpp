@@ -187,9 +187,11 @@ std::shared_ptr<RTDEControlInterface> RtdeInterfaces::connect_control(const std:
   return control;
 }
 
-std::shared_ptr<RTDEControlInterface> RtdeInterfaces::activate(std::shared_ptr<RTDEControlInterface> control)
+std::shared_ptr<RTDEControlInterface> RtdeInterfaces::activate(std::shared_ptr<RTDEControlInterface> control,
+                                                               bool after_script)
 {
-  ++starts_;
+  const Starts before = starts_;
+  starts_ = {before.number + 1, before.after_script + (after_script ? 1 : 0)};
   return std::exchange(control_, std::move(control));
 }
 
@@ -297,7 +299,7 @@ bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
     const std::lock_guard lock(mutex_);
     pending_.reset();
     if (works) {
-      activate(control);
+      activate(control, true);
     }
   }
   if (control && !works) {

@@ -81,8 +81,12 @@ class RtdeInterfaces {
   /// lock. Null after `timeout`.
   HeldLock take_control_lock(ur_rtde::RTDEControlInterface & control,
                              std::chrono::milliseconds timeout) const;
-  /// Incremented when a control program becomes active, and when it is given up.
-  std::uint32_t starts() const { return starts_; }
+  /// A start: a control program becomes active, or is given up.
+  struct Starts {
+    std::uint32_t number = 0;
+    std::uint32_t after_script = 0;  ///< of these, the ones in which the suspended program goes on
+  };
+  Starts starts() const { return starts_; }
   /// Incremented when a control program that was sent does not answer.
   std::uint32_t failed_starts() const { return failed_starts_; }
   /// The control program of the active or pending connection has missed its heartbeat although no command
@@ -106,7 +110,7 @@ class RtdeInterfaces {
   Status check_extensions(const ControllerVersion & version);
   /// Makes `control` the active interface, or none. Hold mutex_. Returns the previous one.
   std::shared_ptr<ur_rtde::RTDEControlInterface> activate(
-      std::shared_ptr<ur_rtde::RTDEControlInterface> control);
+      std::shared_ptr<ur_rtde::RTDEControlInterface> control, bool after_script = false);
   std::shared_ptr<ur_rtde::RTDEControlInterface> active_or_pending() const;
   bool resume_suspended(const std::stop_token & stop);
 
@@ -119,7 +123,7 @@ class RtdeInterfaces {
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
-  std::atomic<std::uint32_t> starts_ = 0;
+  std::atomic<Starts> starts_;  ///< written with mutex_
   std::atomic<std::uint32_t> failed_starts_ = 0;
   std::atomic<double> watchdog_frequency_ = 0.0;
   std::shared_ptr<ur_rtde::RTDEIOInterface> io_;

@@ -59,14 +59,12 @@ Error program_ended()
 /// Resumes the control program on destruction.
 class ResumeGuard {
  public:
-  ResumeGuard(ControlProgramManager & manager, const ScriptMonitor & monitor,
-              std::atomic<std::uint32_t> & restarts)
-      : manager_(manager), monitor_(monitor), restarts_(restarts)
+  ResumeGuard(ControlProgramManager & manager, const ScriptMonitor & monitor)
+      : manager_(manager), monitor_(monitor)
   {
   }
   ~ResumeGuard()
   {
-    restarts_ += monitor_.replaced() ? 0 : 1;  // before the start
     // The status of the robot tells why the control program does not run, if it does not.
     std::ignore = monitor_.replaced() ? manager_.resume_after_replacement(resume_timeout)
                                       : manager_.resume(resume_timeout);
@@ -77,7 +75,6 @@ class ResumeGuard {
  private:
   ControlProgramManager & manager_;
   const ScriptMonitor & monitor_;
-  std::atomic<std::uint32_t> & restarts_;
 };
 
 }  // namespace
@@ -159,7 +156,7 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
     return rejected(yielded.error());
   }
   ++ended_programs_;
-  const ResumeGuard resume(manager_, monitor, restarts_);
+  const ResumeGuard resume(manager_, monitor);
   // The goal is that of one control program, which has yielded; not that of another one, which was started in
   // between.
   if (const Generation now = generation_(); now.link != begin.link || now.starts != begin.starts + 1) {

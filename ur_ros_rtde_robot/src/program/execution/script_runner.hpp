@@ -25,8 +25,6 @@ class ScriptRunner {
   ScriptReport run(Permit * holder, const std::string & script, const ScriptOptions & options);
   /// Number of control programs that have yielded to a script, and of scripts that have come to their end.
   std::uint32_t ended_programs() const { return ended_programs_; }
-  /// Of the control program, after a script.
-  std::uint32_t restarts() const { return restarts_; }
 
  private:
   ScriptReport run_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
@@ -43,7 +41,6 @@ class ScriptRunner {
   /// Makes the markers of scripts unique; starts at random to differ from those of other processes.
   std::atomic<std::uint32_t> next_id_;
   std::atomic<std::uint32_t> ended_programs_ = 0;
-  std::atomic<std::uint32_t> restarts_ = 0;
 };
 
 }  // namespace ur_ros_rtde
