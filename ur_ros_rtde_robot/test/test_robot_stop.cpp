@@ -324,6 +324,27 @@ TEST_F(StopTest, NamesTheWatchdogThatRuns)
   }
 }
 
+TEST_F(StopTest, DoesNotForgetAProgramWhoseConnectionItHasClosed)
+{
+  auto options = robot_options();
+  options.watchdog_frequency = 2.0;
+  make_both(options);
+  controller.control({{"command", "remote_control"}, {"on", false}});  // no stop by the dashboard server
+  ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
+                                   {0.1, 0.1, 0.1, 0.5, 0.5, 0.5}));
+  ASSERT_TRUE(control()->speedL({0.05, 0.0, 0.0, 0.0, 0.0, 0.0}, 1.0, 0.0));
+  ASSERT_TRUE(eventually([&] { return robot->latest()->target_tcp_speed[0] > 0.049; }));
+  const std::jthread blocked([control = control()] { control->speedStop(0.25); });
+  ASSERT_TRUE(eventually([&] { return robot->latest()->target_tcp_speed[0] < 0.045; }));
+  robot->begin_stop(decelerating(1.0, 1.0), stopped_by_the_driver());
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));  // but force mode is on
+  ASSERT_FALSE(robot->ready_to_move());
+  const auto report = robot->stop_motion(decelerating(2.0, 2.0));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::watchdog);
+  EXPECT_EQ(robot->latest()->runtime_state, RuntimeState::stopped);
+}
+
 TEST_F(StopTest, IsPartOfTheDriversShutdown)
 {
   make_both();

@@ -128,6 +128,9 @@ Status MotionStopper::end_call_of_revoked_holder()
 
 Status MotionStopper::stop_by_command(const StopOptions & options)
 {
+  if (has_given_up_program()) {
+    return failure(ErrorCode::not_ready, "the connection to the control program is closed");
+  }
   if (Status ended = end_call_of_revoked_holder(); !ended) {
     return ended;
   }
@@ -273,7 +276,10 @@ Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
-  const bool runs = tracker_.view().program_running;
+  const auto before = tracker_.view();
+  if (before.program_running) {
+    given_up_ = before.program;
+  }
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
@@ -286,7 +292,7 @@ Status MotionStopper::stop_by_watchdog(const StopOptions & options)
   if (!ended) {
     return failure(ErrorCode::timeout, "the watchdog of the program has not ended it");
   }
-  ended_programs_ += runs ? 1 : 0;
+  ended_programs_ += before.program_running ? 1 : 0;
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although the watchdog has ended its program");
@@ -296,6 +302,12 @@ double MotionStopper::watchdog_frequency() const
 {
   return activities_.now().contains(Activity::script) ? options_.watchdog_frequency
                                                       : interfaces_.watchdog_frequency();
+}
+
+bool MotionStopper::has_given_up_program() const
+{
+  const auto view = tracker_.view();
+  return view.program_running && given_up_ == view.program;
 }
 
 double MotionStopper::cycle_time() const

@@ -163,7 +163,7 @@ Status MotionStopper::end_program(const StopOptions & options)
 bool MotionStopper::is_done(const StopOptions & options) const
 {
   const Activities started = activities_.now();
-  if (!started.without(options.keep).empty()) {
+  if (!started.without(options.keep).empty() || has_given_up_program()) {
     return false;
   }
   const auto view = tracker_.view();
