@@ -144,7 +144,6 @@ def test_the_arm_stands_within_the_documented_time(event, moving, fresh_client, 
 def test_move_until_force_stops_within_a_few_cycles_of_the_contact(driver, fresh_client, simulator):
     make_ready(fresh_client, 60.0)
     simulator.control("place_surface", z=TABLE)
-    before = simulator.state()["cycle"]
     try:
         goal = fresh_client.send(MoveUntilForce, "move_until_force", twist=Twist(linear=Vector3(z=-0.05)), threshold=20.0,
                                  deceleration=10.0, distance=0.3, timeout=15.0)
@@ -154,4 +153,3 @@ def test_move_until_force_stops_within_a_few_cycles_of_the_contact(driver, fresh
     assert abs(result.measured.z) == pytest.approx(20.0, abs=15.0)
     # 20 N correspond to 1 mm at 20 kN/m. At 50 mm/s, three cycles add 0.3 mm and the deceleration 0.1 mm.
     assert TABLE - result.final_state.tcp_pose.position.z < 0.003
-    assert simulator.state()["cycle"] > before
