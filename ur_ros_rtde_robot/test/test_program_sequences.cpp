@@ -69,6 +69,16 @@ TEST(ProgramSequenceTest, EndsAPausedProgramOfALostConnectionBeforeTheRobotIsRea
   EXPECT_EQ(sequence.process(E::inspection), A::stop_program);
 }
 
+TEST(ProgramSequenceTest, EndsAProgramThatWasPausedWhenTheConnectionWasLost)
+{
+  auto sequence = ProgramSequence().running();
+  EXPECT_EQ(sequence.sample(ProgramActivity::paused), A::close_control);
+  sequence.process(E::link_lost);
+  sequence.process(E::link_established);
+  EXPECT_EQ(sequence.sample(ProgramActivity::paused), A::none);
+  EXPECT_EQ(sequence.process(E::inspection), A::stop_program);
+}
+
 TEST(ProgramSequenceTest, TakesAProgramThatRunsAfterAFailedRestartForTheControlProgram)
 {
   auto sequence = ProgramSequence().running();

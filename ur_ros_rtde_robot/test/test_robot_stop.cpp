@@ -180,6 +180,13 @@ TEST_F(StopTest, DoesNotSucceedIfAPausedProgramCannotBeEnded)
   ASSERT_FALSE(report);
   EXPECT_NE(report.error().message.find("stop it on the pendant"), std::string::npos)
       << report.error().message;
+  const auto link = robot->latest()->link;
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return robot->latest()->link != link; }));
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  const auto again = robot->stop_motion();
+  ASSERT_FALSE(again);
+  EXPECT_NE(again.error().message.find("stop it on the pendant"), std::string::npos) << again.error().message;
 }
 
 TEST_F(StopTest, EndsAForeignProgramThatStandsIfAsked)
@@ -327,7 +334,7 @@ TEST_F(StopTest, NamesTheWatchdogThatRuns)
 TEST_F(StopTest, DoesNotForgetAProgramWhoseConnectionItHasClosed)
 {
   auto options = robot_options();
-  options.watchdog_frequency = 2.0;
+  options.watchdog_frequency = 1.0;
   make_both(options);
   controller.control({{"command", "remote_control"}, {"on", false}});  // no stop by the dashboard server
   ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,

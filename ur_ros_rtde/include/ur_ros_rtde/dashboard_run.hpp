@@ -112,7 +112,8 @@ class DashboardRun {
   Expected<std::shared_ptr<void>> begin_start();
   /// Why what is being started must not go on: the goal has to stop, or a stop came later than the goal.
   std::optional<Error> overtaken();
-  void end_program();
+  /// Ends the program that may have been started. Returns `why`, and whether it may still begin.
+  Outcome end_program(Error why);
   Outcome take_answer(const std::string & line, const Expected<std::string> & answer, double timeout);
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout,

@@ -165,33 +165,32 @@ Outcome DashboardRun::command(const std::string & line, const std::string & repl
 Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
 {
   const auto deadline = Clock::now() + to_duration(timeout);
-  auto under_way = begin_start();
+  DashboardSession session(connection_.address());
+  if (const Status connected = session.connect(to_duration(timeout), stop_request_->token()); !connected) {
+    return take_answer(request.line, tl::unexpected(connected.error()), timeout);
+  }
+  auto under_way = begin_start();  // not before: a stop does not wait for the connection
   if (!under_way) {
     return under_way.error();
   }
-  DashboardSession session(connection_.address());
   const auto answer =
-      session.request(request.line, to_duration(timeout), stop_request_->token(), late_answer_timeout);
+      session.request_once(request.line, to_duration(timeout), stop_request_->token(), late_answer_timeout);
   Outcome outcome = take_answer(request.line, answer, timeout);
   if (outcome && !begins_with(answer_, request.reply)) {
     under_way->reset();
     return rejection(request.line);
   }
-  const bool may_play = request.starts == Starts::program &&
-                        (answer || answer.error().code != ErrorCode::canceled);  // before it was sent
   if (auto why = overtaken()) {
     outcome = *std::move(why);
   }
+  const bool may_play = request.starts == Starts::program;
   if (!may_play) {
     under_way->reset();
   }
   if (outcome && !request.expected.query.empty()) {
-    outcome = until(request.expected, deadline, timeout, request.starts == Starts::program);
+    outcome = until(request.expected, deadline, timeout, may_play);
   }
-  if (may_play && !outcome) {
-    end_program();
-  }
-  return outcome;
+  return may_play && !outcome ? end_program(outcome.error()) : outcome;
 }
 
 Expected<std::shared_ptr<void>> DashboardRun::begin_start()
@@ -208,20 +207,25 @@ std::optional<Error> DashboardRun::overtaken()
   return start ? std::nullopt : std::make_optional(start.error());
 }
 
-/// A program that has not begun cannot be stopped.
-void DashboardRun::end_program()
+Outcome DashboardRun::end_program(Error why)
 {
-  const auto deadline = Clock::now() + begin_of_program_timeout;
   DashboardSession session(connection_.address());
-  for (auto now = Clock::now(); now < deadline; now = Clock::now()) {
+  const auto deadline = Clock::now() + begin_of_program_timeout;
+  bool has_begun = false;  // it could not be stopped before
+  for (auto now = Clock::now(); now < deadline && !has_begun; now = Clock::now()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - now);
     const auto state = session.request("programState", left);
-    if (!state || begins_with(*state, "PLAYING")) {
-      break;
+    has_begun = state && begins_with(*state, "PLAYING");
+    if (!has_begun) {
+      std::this_thread::sleep_for(polling_interval);
     }
-    std::this_thread::sleep_for(polling_interval);
   }
-  static_cast<void>(session.request("stop", end_of_program_timeout));
+  const auto answer = session.request("stop", end_of_program_timeout);
+  if (!has_begun || !answer || !begins_with(*answer, "Stopped")) {
+    why.message += fmt::format("; its program {}: look at the pendant",
+                               has_begun ? "was not stopped by this goal" : "may still begin");
+  }
+  return why;
 }
 
 Outcome DashboardRun::execute(const DashboardRequest & request, double timeout)
@@ -255,10 +259,14 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
     deadline = std::min(deadline, Clock::now() + confirmed_state_timeout);
   }
   DashboardSession session(connection_.address());
+  const auto query_timeout = starts_program ? late_answer_timeout : answer_timeout;
   while (true) {
-    const auto answer = session.request(expected.query, answer_timeout, stop_request_->token());
+    const auto answer = session.request(expected.query, query_timeout, stop_request_->token());
     if (!answer) {
       return stop_reason().value_or(answer.error());
+    }
+    if (auto why = starts_program ? overtaken() : std::nullopt) {
+      return *why;
     }
     const std::string state = without_label(*answer);
     if (state != shown) {
@@ -279,9 +287,6 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
                       expected.query, state, timeout, fmt::join(expected.states, " or "), answer_));
     }
     if (auto why = sleep_for(polling_interval)) {
-      return *why;
-    }
-    if (auto why = starts_program ? overtaken() : std::nullopt) {
       return *why;
     }
   }

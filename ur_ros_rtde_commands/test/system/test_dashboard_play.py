@@ -30,12 +30,33 @@ class HoldsPlay(PassesOn):
         return super().answer(line)
 
 
+class HoldsGreeting(PassesOn):
+    """Holds the greeting of the first connection after arm()."""
+
+    holding, stopped = threading.Event(), threading.Event()
+    holding.set()
+
+    @classmethod
+    def arm(cls):
+        cls.holding, cls.stopped, cls.has_played = threading.Event(), threading.Event(), False
+
+    def handle(self):
+        if not self.holding.is_set():
+            self.holding.set()
+            self.stopped.wait(60.0)
+        super().handle()
+
+    def answer(self, line):
+        HoldsGreeting.has_played = line.strip() == b"play"
+        return super().answer(line)
+
+
 class BeginsLate(PassesOn):
     """Answers `play` at once; the program begins when the client has sent a stop."""
 
     @classmethod
     def arm(cls):
-        cls.answered, cls.stopped = threading.Event(), threading.Event()
+        cls.answered, cls.stopped, cls.began = (threading.Event() for _ in range(3))
 
     def answer(self, line):
         if line.strip() != b"play":
@@ -47,8 +68,11 @@ class BeginsLate(PassesOn):
     def play_later(self):
         self.stopped.wait(30.0)
         with socket.create_connection((self.server.server_address[0], PORT_BEHIND)) as robot:
+            answers = robot.makefile()
+            answers.readline()
             robot.sendall(b"play\n")
-            robot.recv(100)
+            if answers.readline().startswith("Starting program"):
+                self.began.set()
 
 
 @contextlib.contextmanager
@@ -107,6 +131,18 @@ def test_a_play_that_is_answered_after_the_stop_has_ended_is_ended(addresses, pr
         check_that_nothing_moves_again(simulator)
 
 
+def test_a_play_is_not_sent_after_a_stop_that_came_while_it_connected(addresses, processes):
+    with robot_with_program(HoldsGreeting, addresses, processes) as (client, simulator):
+        HoldsGreeting.arm()
+        play = client.send(DashboardCommand, "dashboard/play")
+        assert HoldsGreeting.holding.wait(10.0)
+        client.send(Stop, "stop").succeeded()
+        HoldsGreeting.stopped.set()
+        assert play.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+        assert not HoldsGreeting.has_played
+        check_that_nothing_moves_again(simulator)
+
+
 def test_a_play_that_is_answered_late_succeeds(addresses, processes):
     HoldsPlay.arm(timeout=60.0)
     with robot_with_program(HoldsPlay, addresses, processes) as (client, simulator):
@@ -128,9 +164,11 @@ def test_a_program_that_begins_late_is_ended(addresses, processes, is_canceled):
         stop = None if is_canceled else client.send(Stop, "stop")
         if is_canceled:
             play.cancel()
+        assert stop is None or stop.accepted
         BeginsLate.stopped.set()
         if stop:
             stop.succeeded()
+        assert BeginsLate.began.wait(10.0)
         assert play.wait_for_result()[1].error_code == (ErrorCode.CANCELED if is_canceled else ErrorCode.PREEMPTED)
         check_that_nothing_moves_again(simulator)
 
@@ -143,4 +181,5 @@ def test_a_program_that_begins_after_the_timeout_of_its_goal_is_ended(addresses,
         wait_for_simulated(simulator, 0.7)
         BeginsLate.stopped.set()
         assert play.wait_for_result()[1].error_code == ErrorCode.TIMEOUT
+        assert BeginsLate.began.is_set()
         check_that_nothing_moves_again(simulator)

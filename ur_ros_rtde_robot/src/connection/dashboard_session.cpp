@@ -62,8 +62,13 @@ Status DashboardSession::connect(const WaitLimit & wait_limit)
   }
   socket_ = std::move(*socket);
   received_.clear();
-  const WaitLimit of_greeting{wait_limit.deadline, wait_limit.stop, {}};
-  return next_line(of_greeting).map([](const std::string &) {});
+  return next_line(wait_limit).map([](const std::string &) {});  // the greeting
+}
+
+Expected<std::string> DashboardSession::send(const std::string & line, const WaitLimit & wait_limit)
+{
+  const Status sent = socket_->write(line + "\n", wait_limit.deadline);
+  return sent ? next_line(wait_limit) : tl::unexpected(sent.error());
 }
 
 Expected<std::string> DashboardSession::ask(const std::string & line, const WaitLimit & wait_limit)
@@ -72,10 +77,7 @@ Expected<std::string> DashboardSession::ask(const std::string & line, const Wait
   if (!socket_ || !received_.empty()) {  // what has arrived does not answer this request
     ready = connect(wait_limit);
   }
-  if (ready) {
-    ready = socket_->write(line + "\n", wait_limit.deadline);
-  }
-  auto answer = ready ? next_line(wait_limit) : Expected<std::string>(tl::unexpected(ready.error()));
+  auto answer = ready ? send(line, wait_limit) : Expected<std::string>(tl::unexpected(ready.error()));
   if (!answer) {
     socket_.reset();
   }
@@ -83,15 +85,28 @@ Expected<std::string> DashboardSession::ask(const std::string & line, const Wait
 }
 
 Expected<std::string> DashboardSession::request(const std::string & line, std::chrono::milliseconds timeout,
-                                                const std::stop_token & stop, std::chrono::milliseconds grace)
+                                                const std::stop_token & stop)
 {
-  const WaitLimit wait_limit{Clock::now() + timeout, stop, grace};
+  const WaitLimit wait_limit{Clock::now() + timeout, stop};
   const bool was_connected = socket_.has_value();
   auto answer = ask(line, wait_limit);
   if (!answer && was_connected && answer.error().code == ErrorCode::link_lost) {
     return ask(line, wait_limit);  // the robot has closed the connection since the last request
   }
   return answer;
+}
+
+Status DashboardSession::connect(std::chrono::milliseconds timeout, const std::stop_token & stop)
+{
+  return connect(WaitLimit{Clock::now() + timeout, stop});
+}
+
+Expected<std::string> DashboardSession::request_once(const std::string & line,
+                                                     std::chrono::milliseconds timeout,
+                                                     const std::stop_token & stop,
+                                                     std::chrono::milliseconds grace)
+{
+  return send(line, WaitLimit{Clock::now() + timeout, stop, grace});
 }
 
 }  // namespace ur_ros_rtde

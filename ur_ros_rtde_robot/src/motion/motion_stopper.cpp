@@ -263,6 +263,7 @@ void MotionStopper::execute_operation(std::unique_lock<std::mutex> & lock)
   changed_.notify_all();
   lock.unlock();
   if (*result) {
+    active_program_.reset();
     logger_.reset();
   } else {
     logger_.log_on_change(LogLevel::warn,

@@ -143,8 +143,8 @@ class MotionStopper {
   /// Calls `command` with the control interface, which it takes from a call of another thread.
   Status with_control(double answer_timeout,
                       const std::function<bool(ur_rtde::RTDEControlInterface &)> & command);
-  /// A stop has closed the connection to the program that runs, so that its watchdog ends it. Until then it
-  /// may move the arm; what it has started is no longer known.
+  /// The program that runs had started something when this stop looked, and the connection to it is closed:
+  /// what it has started is no longer known, and it may move the arm until its end.
   bool has_given_up_program() const;
   double cycle_time() const;  ///< s
   /// Evaluates `condition` with each sample until it is true. False after `timeout` (s of the controller), if
@@ -172,7 +172,9 @@ class MotionStopper {
   std::atomic<std::uint32_t> ended_programs_ = 0;
   std::atomic<bool> options_changed_ = false;  ///< became stronger since the operation is being executed
   bool stops_in_joint_space_ = false;          ///< stopper's thread only
-  std::optional<std::uint32_t> given_up_;      ///< MotionTracker::View::program; stopper's thread only
+  /// MotionTracker::View::program, of a program that had started something, until a stop has succeeded.
+  /// Stopper's thread only.
+  std::optional<std::uint32_t> active_program_;
   std::jthread thread_;
 };
 

@@ -277,9 +277,6 @@ Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
   const auto before = tracker_.view();
-  if (before.program_running) {
-    given_up_ = before.program;
-  }
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
@@ -307,7 +304,7 @@ double MotionStopper::watchdog_frequency() const
 bool MotionStopper::has_given_up_program() const
 {
   const auto view = tracker_.view();
-  return view.program_running && given_up_ == view.program;
+  return view.program_running && active_program_ == view.program && !interfaces_.control_interface();
 }
 
 double MotionStopper::cycle_time() const

@@ -28,12 +28,15 @@ Expected<StopReport> MotionStopper::execute(const StopOptions & options)
 
 Expected<StopReport> MotionStopper::execute_once(const StopOptions & options)
 {
-  const auto begin = tracker_.view().controller_time;
+  const auto first = tracker_.view();
+  if (first.program_running && !(first.at_rest && activities_.now().empty())) {
+    active_program_ = first.program;
+  }
   const auto report = [&](const Expected<StopMeans> & means) -> Expected<StopReport> {
     if (!means) {
       return tl::unexpected(means.error());
     }
-    return StopReport{*means, tracker_.view().controller_time - begin};
+    return StopReport{*means, tracker_.view().controller_time - first.controller_time};
   };
   if (!state_.link().connected) {
     return stop_without_rtde();

@@ -112,7 +112,8 @@ ControlOwner ControlProgramManager::control_owner() const
 bool ControlProgramManager::has_left_program() const
 {
   const ProgramState state = state_;
-  return state == ProgramState::ended || state == ProgramState::orphaned;
+  return state == ProgramState::ended || state == ProgramState::program_lost ||
+         state == ProgramState::orphaned;
 }
 
 bool ControlProgramManager::has_foreign_program() const

@@ -19,9 +19,15 @@ class DashboardSession {
 
   /// Sends a line and returns the answer without the line end. Connects with the first request, after an
   /// error, and if the robot has closed the connection. Errors: link_lost; timeout after `timeout`; canceled
-  /// if a stop is requested. `grace`: how long the answer to a line that was sent is waited for after that.
+  /// if a stop is requested.
   Expected<std::string> request(const std::string & line, std::chrono::milliseconds timeout,
-                                const std::stop_token & stop = {}, std::chrono::milliseconds grace = {});
+                                const std::stop_token & stop = {});
+
+  /// For a line that must be sent at most once, and at once: connects, with the errors of request().
+  Status connect(std::chrono::milliseconds timeout, const std::stop_token & stop);
+  /// Sends a line after connect(). The answer is waited for until `grace` after a stop request.
+  Expected<std::string> request_once(const std::string & line, std::chrono::milliseconds timeout,
+                                     const std::stop_token & stop, std::chrono::milliseconds grace);
 
  private:
   struct WaitLimit {
@@ -31,6 +37,7 @@ class DashboardSession {
   };
   Status connect(const WaitLimit & wait_limit);
   Expected<std::string> ask(const std::string & line, const WaitLimit & wait_limit);
+  Expected<std::string> send(const std::string & line, const WaitLimit & wait_limit);
   Expected<std::string> next_line(WaitLimit wait_limit);
 
   std::string address_;
