@@ -172,3 +172,7 @@ def main():
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

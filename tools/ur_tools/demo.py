@@ -14,7 +14,7 @@ from typing import List
 from . import console, ports, simulation, viewer
 from .environment import run_environment
 from .layout import PROGRAM, ROOT, Layout
-from .processes import Programs
+from .processes import QUIETLY, Programs
 
 # Distance of the tool above the table, m: how far each size of arm can move down from its start pose.
 DROP = {"ur3": 0.15, "ur3e": 0.15}
@@ -94,10 +94,10 @@ def _start(programs: Programs, layout: Layout, options: argparse.Namespace) -> N
 
 def _experiment(programs: Programs, layout: Layout, options: argparse.Namespace) -> int:
     console.step("move_down_until_force")
-    command = [layout.python, ROOT / "demo", "--address", options.address, "--model",
+    command = [layout.python, ROOT / "demo" / "force_experiment.py", "--address", options.address, "--model",
                _name(options.model), "--threshold", options.threshold, "--speed", options.speed,
                "--drop", options.drop, "--output", options.output]
-    return programs.run([str(part) for part in command], run_environment(layout), limit=300.0)
+    return programs.run([str(part) for part in command], run_environment(layout), limit=300.0, how=QUIETLY)
 
 
 def _keep_running(programs: Programs, options: argparse.Namespace) -> None:

@@ -21,6 +21,8 @@ from .console import Failure, tail
 
 # Signals, each with the time in s that a program has to exit.
 GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))
+# For a program in Python that handles SIGTERM: SIGINT leaves a traceback while the interpreter starts.
+QUIETLY = GENTLY[1:]
 
 
 def group_is_alive(group: int) -> bool:
@@ -121,8 +123,9 @@ class Programs:
         self._programs.append(program)
         return program
 
-    def run(self, command: Sequence[str], env: Mapping[str, str], limit: float) -> int:
-        """Runs a command in the foreground and returns its exit code. Raises Failure at `limit`, s, or if a program exits."""
+    def run(self, command: Sequence[str], env: Mapping[str, str], limit: float, how: Sequence[Tuple[int, float]] = GENTLY) -> int:
+        """Runs a command in the foreground and returns its exit code. Raises Failure at `limit`, s, or if a program exits; the command
+        is stopped with the signals of `how` then."""
         process = subprocess.Popen(command, env=dict(env), stdin=subprocess.DEVNULL, start_new_session=True)
         deadline = time.monotonic() + limit
         try:
@@ -133,7 +136,7 @@ class Programs:
                 time.sleep(0.02)
             return process.returncode
         finally:
-            end_group(process)
+            end_group(process, how)
 
     def check(self) -> None:
         """Raises Failure, with the end of its log, if a program has exited."""
