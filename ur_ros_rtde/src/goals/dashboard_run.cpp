@@ -173,8 +173,8 @@ Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
   if (!under_way) {
     return under_way.error();
   }
-  const auto answer =
-      session.request_once(request.line, to_duration(timeout), stop_request_->token(), late_answer_timeout);
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+  const auto answer = session.request_once(request.line, left, stop_request_->token(), late_answer_timeout);
   Outcome outcome = take_answer(request.line, answer, timeout);
   if (outcome && !begins_with(answer_, request.reply)) {
     under_way->reset();
