@@ -178,8 +178,7 @@ class Cell:
         """Executes one command of a scene. `then_wait` is a delay afterwards, in seconds of simulated time."""
         seconds = command.pop("then_wait", 0.0)
         self.simulator.control(**command)
-        end = self.simulator.state()["timestamp"] + seconds
-        wait_for(lambda: self.simulator.state()["timestamp"] >= end, 10.0 + 5.0 * seconds, f"{seconds} s of simulated time")
+        self.simulator.wait(seconds, 10.0 + 5.0 * seconds)
 
     def restore(self, limit=30.0):
         """Restarts what has exited, resets the simulator and moves the arm home."""

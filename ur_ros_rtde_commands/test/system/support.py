@@ -168,6 +168,11 @@ class Simulator:
     def state(self):
         return self.control("state")["state"]
 
+    def wait(self, seconds, limit=10.0):
+        """Waits for a duration of simulated time."""
+        end = self.state()["timestamp"] + seconds
+        wait_for(lambda: self.state()["timestamp"] >= end, limit, f"{seconds:g} s of simulated time")
+
     def unlock_protective_stop(self):
         """Returns whether the controller unlocks it. The controller rejects in the first seconds of a protective stop."""
         return self.may("unlock_protective_stop")

@@ -86,14 +86,16 @@ def robot_with_program(handler, addresses, processes):
         yield client, simulator
 
 
-def wait_for_simulated(simulator, duration):
-    end = simulator.state()["timestamp"] + duration
-    wait_for(lambda: simulator.state()["timestamp"] > end, 10.0 + duration, f"{duration} s of the simulator")
+def start_play(client, reached, **fields):
+    """Returns the goal when the proxy has got as far as `reached`."""
+    play = client.send(DashboardCommand, "dashboard/play", **fields)
+    assert reached.wait(10.0)
+    return play
 
 
 def check_that_nothing_moves_again(simulator):
     wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 5.0, "the end of the program")
-    wait_for_simulated(simulator, 0.2)
+    simulator.wait(0.2)
     assert simulator.state()["program"]["state"] == "STOPPED" and simulator.is_at_rest()
 
 
@@ -103,8 +105,7 @@ def check_that_nothing_moves_again(simulator):
 def test_a_stop_outlasts_a_play_that_was_sent_before(addresses, processes, is_canceled, action, name):
     HoldsPlay.arm()
     with robot_with_program(HoldsPlay, addresses, processes) as (client, simulator):
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert HoldsPlay.holding.wait(10.0)
+        play = start_play(client, HoldsPlay.holding)
         if is_canceled:
             play.cancel()
         stop = client.send(action, name) if action else None
@@ -121,8 +122,7 @@ def test_a_stop_outlasts_a_play_that_was_sent_before(addresses, processes, is_ca
 def test_a_play_that_is_answered_after_the_stop_has_ended_is_ended(addresses, processes):
     HoldsPlay.arm(timeout=60.0)
     with robot_with_program(HoldsPlay, addresses, processes) as (client, simulator):
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert HoldsPlay.holding.wait(10.0)
+        play = start_play(client, HoldsPlay.holding)
         client.send(Stop, "stop").succeeded()
         HoldsPlay.stopped.set()
         assert play.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
@@ -132,8 +132,7 @@ def test_a_play_that_is_answered_after_the_stop_has_ended_is_ended(addresses, pr
 def test_a_play_is_not_sent_after_a_stop_that_came_while_it_connected(addresses, processes):
     with robot_with_program(HoldsGreeting, addresses, processes) as (client, simulator):
         HoldsGreeting.arm()
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert HoldsGreeting.holding.wait(10.0)
+        play = start_play(client, HoldsGreeting.holding)
         client.send(Stop, "stop").succeeded()
         HoldsGreeting.stopped.set()
         assert play.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
@@ -144,9 +143,8 @@ def test_a_play_is_not_sent_after_a_stop_that_came_while_it_connected(addresses,
 def test_a_play_that_is_answered_late_succeeds(addresses, processes):
     HoldsPlay.arm(timeout=60.0)
     with robot_with_program(HoldsPlay, addresses, processes) as (client, simulator):
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert HoldsPlay.holding.wait(10.0)
-        wait_for_simulated(simulator, 3.0)
+        play = start_play(client, HoldsPlay.holding)
+        simulator.wait(3.0)
         HoldsPlay.stopped.set()
         play.succeeded()
         assert simulator.state()["program"]["state"] == "PLAYING"
@@ -156,9 +154,8 @@ def test_a_play_that_is_answered_late_succeeds(addresses, processes):
 def test_a_program_that_begins_late_is_ended(addresses, processes, is_canceled):
     BeginsLate.arm()
     with robot_with_program(BeginsLate, addresses, processes) as (client, simulator):
-        play = client.send(DashboardCommand, "dashboard/play")
-        assert BeginsLate.answered.wait(10.0)
-        wait_for_simulated(simulator, LATE)
+        play = start_play(client, BeginsLate.answered)
+        simulator.wait(LATE)
         stop = None if is_canceled else client.send(Stop, "stop")
         if is_canceled:
             play.cancel()
@@ -174,9 +171,8 @@ def test_a_program_that_begins_late_is_ended(addresses, processes, is_canceled):
 def test_a_program_that_begins_after_the_timeout_of_its_goal_is_ended(addresses, processes):
     BeginsLate.arm()
     with robot_with_program(BeginsLate, addresses, processes) as (client, simulator):
-        play = client.send(DashboardCommand, "dashboard/play", timeout=0.5)
-        assert BeginsLate.answered.wait(10.0)
-        wait_for_simulated(simulator, 0.7)
+        play = start_play(client, BeginsLate.answered, timeout=0.5)
+        simulator.wait(0.7)
         BeginsLate.stopped.set()
         assert play.wait_for_result()[1].error_code == ErrorCode.TIMEOUT
         assert BeginsLate.began.is_set()

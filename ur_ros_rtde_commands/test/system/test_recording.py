@@ -44,11 +44,6 @@ def read_csv(file):
     return header, [[float(number) for number in row] for row in rows]
 
 
-def wait_for_simulated_time(simulator, seconds):
-    begin = simulator.state()["timestamp"]
-    wait_for(lambda: simulator.state()["timestamp"] >= begin + seconds, 30.0, f"{seconds} s of the simulator's time")
-
-
 def count_lines(file):
     return sum(1 for _ in open(file, "rb"))
 
@@ -56,7 +51,7 @@ def count_lines(file):
 def test_writes_one_row_per_package(receiver, simulator, client, tmp_path):
     file = tmp_path / "run.csv"
     assert start_when_connected(client, file) == DEFAULT_COLUMNS
-    wait_for_simulated_time(simulator, 1.0)
+    simulator.wait(1.0, 30.0)
     answer = stop(client)
     assert answer.success and answer.filename == str(file), answer.message
     header, rows = read_csv(file)
@@ -93,7 +88,7 @@ def test_numbers_have_full_round_trip_precision(receiver, simulator, client, tmp
 def test_records_at_a_lower_frequency(receiver, simulator, client, tmp_path):
     file = tmp_path / "slow.csv"
     start_when_connected(client, file, ["timestamp"], frequency=50.0)
-    wait_for_simulated_time(simulator, 1.0)
+    simulator.wait(1.0, 30.0)
     answer = stop(client)
     stamps = [row[0] for row in read_csv(file)[1]]
     assert round((stamps[-1] - stamps[0]) * 50.0) + 1 == pytest.approx(answer.rows + answer.lost, abs=1)
@@ -189,7 +184,7 @@ def test_a_full_disk_is_reported_and_leaves_complete_rows(simulator, processes, 
         columns = start_when_connected(client, file)
         unlimited = resource.prlimit(receiver.pid, resource.RLIMIT_FSIZE, (65536, resource.RLIM_INFINITY))
         receiver.wait_for_output("cannot be written anymore", 30.0)
-        wait_for_simulated_time(simulator, 0.2)
+        simulator.wait(0.2, 30.0)
         answer = stop(client)
         assert not answer.success and "cannot be written anymore" in answer.message
         header, rows = read_csv(file)
@@ -207,7 +202,7 @@ def test_a_protective_stop_leaves_a_file_of_the_last_2_s(simulator, tmp_path):
         wait_for(lambda: any("connected to" in line for line in list(receiver.lines)), 15.0, "the connection")
         simulator.control("power", to="running")
         simulator.control("run_script", script=f"def go():\n  movej({[HOME[0] + 2.0, *HOME[1:]]}, a=2.0, v=0.3)\nend\n")
-        wait_for_simulated_time(simulator, 3.0)
+        simulator.wait(3.0, 30.0)
         simulator.control("protective_stop", reason="a test")
         text = "before the PROTECTIVE_STOP are in "
         line = wait_for(lambda: next((line for line in list(receiver.lines) if text in line), None), 15.0, "the file")

@@ -105,8 +105,7 @@ def test_what_a_command_that_ends_before_its_motion_has_started_is_stopped(cell,
     simulator, _driver, client = cell
     start = simulator.state()["actual"]["position"]
     client.send(SpeedJ, name, acceleration=0.5).succeeded()
-    begin = simulator.state()["timestamp"]
-    wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would move")
+    simulator.wait(STOPPING_TIME, 15.0)
     assert simulator.is_at_rest() and simulator.state()["actual"]["position"] == pytest.approx(start, abs=0.05)
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 

@@ -276,7 +276,7 @@ Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
-  const auto before = tracker_.view();
+  const bool runs = tracker_.view().program_running;
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
@@ -289,7 +289,7 @@ Status MotionStopper::stop_by_watchdog(const StopOptions & options)
   if (!ended) {
     return failure(ErrorCode::timeout, "the watchdog of the program has not ended it");
   }
-  ended_programs_ += before.program_running ? 1 : 0;
+  ended_programs_ += runs ? 1 : 0;
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although the watchdog has ended its program");
