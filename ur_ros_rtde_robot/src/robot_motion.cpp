@@ -98,10 +98,16 @@ Status Robot::may_continue(const Lease & lease) const
 
 Status Robot::is_valid(const Lease & lease) const
 {
-  if (Status possible = motion_possible(); !possible) {
-    return possible;  // names the cause better than the change of the generation that follows from it
+  const Status possible = motion_possible();
+  const Status current = is_current(lease.permit_->generation());
+  if (possible) {
+    return current;
   }
-  return is_current(lease.permit_->generation());
+  // It names the cause better than the change of the generation that follows from it. But a program ends
+  // because its connection was lost, even if the new one has shown it running for some cycles.
+  const bool follows = possible.error().code == ErrorCode::program_stopped && !current &&
+                       current.error().code == ErrorCode::link_lost;
+  return follows ? current : possible;
 }
 
 std::function<Expected<std::shared_ptr<void>>()> Robot::permission(const Lease & lease) const

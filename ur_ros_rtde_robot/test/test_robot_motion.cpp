@@ -303,6 +303,20 @@ TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
   EXPECT_TRUE(becomes_ready_again());
 }
 
+TEST_F(RobotMotionTest, NamesTheLostConnectionAfterWhichItsProgramHasEnded)
+{
+  make_both();
+  const Lease lease = acquire();
+  const std::uint32_t link = robot->generation().link;
+  controller.control({{"command", "remote_control"}, {"on", false}});  // the program is not started again
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return robot->generation().link != link; }));
+  ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::stopped; }));
+  const Status valid = robot->is_valid(lease);
+  ASSERT_FALSE(valid);
+  EXPECT_EQ(valid.error().code, ErrorCode::link_lost) << valid.error().message;
+}
+
 TEST_F(RobotMotionTest, BlockingCallReturnsWhenTheConnectionIsLost)
 {
   make_both();

@@ -352,6 +352,26 @@ TEST_F(StopTest, DoesNotForgetAProgramWhoseConnectionItHasClosed)
   EXPECT_EQ(robot->latest()->runtime_state, RuntimeState::stopped);
 }
 
+TEST_F(StopTest, DoesNotForgetAProgramThatCouldNotBeEndedForAScript)
+{
+  auto options = robot_options();
+  options.watchdog_frequency = 0.0;
+  make_both(options);
+  controller.control({{"command", "remote_control"}, {"on", false}});  // no stop by the dashboard server
+  ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
+                                   {0.1, 0.1, 0.1, 0.5, 0.5, 0.5}));
+  {
+    const auto call = robot->control_for_queries().hold();  // nothing can end the program
+    EXPECT_EQ(run_script("def s():\n  sync()\nend\n").end, ScriptEnd::rejected);
+  }
+  ASSERT_TRUE(eventually([&] { return at_rest(); }));
+  ASSERT_TRUE(robot->latest()->is_program_running()) << "with force mode on";
+  const auto report = robot->stop_motion();
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("may move the arm again: stop it on the pendant"), std::string::npos)
+      << report.error().message;
+}
+
 TEST_F(StopTest, IsPartOfTheDriversShutdown)
 {
   make_both();

@@ -15,7 +15,7 @@ enum class ProgramState : std::uint8_t {
   disconnected,      ///< no RTDE connection
   program_lost,      ///< no RTDE connection; the control program ran when the connection was lost
   unclaimed,         ///< connected; the control program has not run since
-  orphaned,          ///< connected; the program of a lost connection, or a script, may still run
+  orphaned,          ///< connected; the program of a lost or closed connection, or a script, may still run
   starting,          ///< the control program is being started
   running,           ///< the control program runs and accepts commands
   yielding,          ///< the control program is being ended to run a script in its place
