@@ -98,8 +98,13 @@ Status Robot::may_continue(const Lease & lease) const
 
 Status Robot::is_valid(const Lease & lease) const
 {
+  return is_valid(lease.permit_->generation());
+}
+
+Status Robot::is_valid(const Generation & generation) const
+{
   const Status possible = motion_possible();
-  const Status current = is_current(lease.permit_->generation());
+  const Status current = is_current(generation);
   if (possible) {
     return current;
   }

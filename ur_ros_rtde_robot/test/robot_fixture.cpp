@@ -14,6 +14,9 @@ void RobotFixture::make_robot(RobotOptions options)
     status_times.push_back(std::chrono::steady_clock::now());
   });
   robot->on_sample([this](const Sample & sample) {
+    if (on_sample) {
+      on_sample(sample);
+    }
     if (recording) {
       const std::lock_guard lock(mutex);
       samples.push_back(sample);

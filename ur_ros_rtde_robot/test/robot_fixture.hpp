@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -21,7 +22,8 @@ struct RobotFixture : testing::Test {
   std::vector<std::chrono::steady_clock::time_point> status_times;  ///< of `statuses`
   std::vector<Sample> samples;                                      ///< while `recording`
   std::atomic<bool> recording{false};
-  std::unique_ptr<Robot> robot;  ///< its callbacks use what is above
+  std::function<void(const Sample &)> on_sample;  ///< called on the receiving thread
+  std::unique_ptr<Robot> robot;                   ///< its callbacks use what is above
 
   void make_robot(RobotOptions options = robot_options());
   void make_both(const RobotOptions & options = robot_options());

@@ -1,5 +1,7 @@
 #include <cstdlib>
 #include <fstream>
+#include <thread>
+#include <utility>
 
 #include "robot_fixture.hpp"
 
@@ -149,6 +151,25 @@ TEST_F(RobotConnectionTest, BecomesReadyAfterDroppedLinks)
     ASSERT_TRUE(becomes_ready_again(++times));
     RecordProperty("ready_again_after_s", std::to_string(seconds_since(begin)));
   }
+}
+
+TEST_F(RobotConnectionTest, IsReadyWhileSamplesAreLateOnANewConnection)
+{
+  auto options = robot_options();
+  options.silence_limit = 2000ms;
+  options.watchdog_frequency = 0.0;
+  on_sample = [link = std::uint32_t{0}](const Sample & sample) mutable {
+    if (std::exchange(link, sample.link) != sample.link) {
+      std::this_thread::sleep_for(100ms);  // a late thread: others see the sample before the connection
+    }
+  };
+  make_both(options);
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(becomes_ready_again());
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  const auto late = 2 * options.retry_interval;  // the robot is examined at least once
+  ASSERT_TRUE(eventually([&] { return Clock::now() - robot->latest()->received > late; }));
+  EXPECT_EQ(robot->status().state, RobotState::ready) << robot->status().message;
 }
 
 TEST_F(RobotConnectionTest, NoticesThatOnlyTheControlLinkWasDropped)

@@ -334,15 +334,9 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
     return outcome;  // a script ends the control program by itself, and its report is precise
   }
   const bool uses_control_program = resource != Resource::io && !command_->traits.allowed_in_any_state;
-  const Status possible = robot().motion_possible();
-  if (!possible && (uses_control_program || possible.error().code == ErrorCode::link_lost)) {
-    return possible;
-  }
-  const Generation now = robot().generation();
-  if (now.link != begin.link || (uses_control_program && now.ends != begin.ends)) {
-    return robot().is_current(begin);
-  }
-  return outcome;
+  const Status valid = robot().is_valid(begin);
+  const bool explains = !valid && (uses_control_program || valid.error().code == ErrorCode::link_lost);
+  return explains ? valid : outcome;
 }
 
 Outcome CommandGoal::settle(const Outcome & outcome)

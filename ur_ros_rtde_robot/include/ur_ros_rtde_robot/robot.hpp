@@ -96,8 +96,9 @@ class Robot {
   Status is_current(const Generation & generation) const;
   /// The same, but an end of the program that this driver has brought about is none.
   Status is_continued(const Generation & generation) const;
-  /// Success while the control program and the connection are those with which the holder of `lease` began,
-  /// and the robot can move.
+  /// Success while `generation` is the current one and the robot can move; otherwise the cause.
+  Status is_valid(const Generation & generation) const;
+  /// The same for the generation in which the holder of `lease` began.
   Status is_valid(const Lease & lease) const;
   /// The same, and no stop has taken the arm out of the hands of the holder.
   Status may_continue(const Lease & lease) const;

@@ -16,7 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds first_package_timeout(100);
 /// Stop, start and the check of the result take three passes.
 constexpr int passes_per_cycle = 8;
 
@@ -284,17 +283,10 @@ ControlProgramManager::Outcome ControlProgramManager::examine_once()
 
 tl::expected<Sample, RobotStatus> ControlProgramManager::follow_link()
 {
-  auto sample = receiver_.latest();
-  const auto link =
-      receiver_.link();  // after the sample, which is not of a connection that follows a lost one
-  // A new connection may not have delivered its first package: then the newest sample is of the lost one.
-  if (link.connected && sample && sample->link == lost_link_ &&
-      !receiver_.wait_for_next(*sample, first_package_timeout, stop_.get_token())) {
-    return tl::unexpected(RobotStatus{RobotState::connecting, ErrorCode::link_lost,
-                                      "nothing has come over the new connection yet"});
-  }
+  // Before the sample: a connection is reported after its first sample, so that this one is not older.
+  const auto link = receiver_.link();
+  const auto sample = receiver_.latest();
   if (!link.connected || !sample) {
-    lost_link_ = sample ? sample->link : lost_link_;
     const std::lock_guard lock(mutex_);
     link_ = 0;
     process(ProgramEvent::link_lost);

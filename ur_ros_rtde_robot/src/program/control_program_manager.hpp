@@ -150,7 +150,6 @@ class ControlProgramManager {
   Processed processed_;
   std::uint64_t modes_ = 0;
   // The manager's thread only.
-  std::uint32_t lost_link_ = 0;  ///< Sample::link of the connection that was lost last
   std::chrono::steady_clock::time_point
       next_start_{};  ///< earliest time after a failed start; zero after success
 
