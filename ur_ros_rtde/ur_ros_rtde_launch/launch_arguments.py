@@ -40,6 +40,7 @@ class Argument:
     description: str
     choices: Tuple[str, ...] = ()
     limits: Optional[Tuple[float, float]] = None
+    least: float = 0.0  # of a number that may be 0: the smallest other value
     pattern: Optional[Tuple[str, str]] = None
 
     @property
@@ -55,10 +56,13 @@ class Argument:
         return ("true", "false") if isinstance(self.default, bool) else self.choices
 
     @property
+    def range(self) -> str:
+        low, high = self.limits or (0.0, 0.0)
+        return f"from {self.least or low:g} to {high:g}{', or 0' if self.least else ''}"
+
+    @property
     def help(self) -> str:
-        if self.limits is None:
-            return self.description
-        return f"{self.description} From {self.limits[0]:g} to {self.limits[1]:g}."
+        return f"{self.description} F{self.range[1:]}." if self.limits else self.description
 
     def value(self, text: str) -> Any:
         """Converts `text` to the type of the argument. Raises ArgumentError if it is not a valid value."""
@@ -78,12 +82,12 @@ class Argument:
         kind = type(self.default)
         assert self.limits is not None  # every number has limits
         low, high = self.limits
-        allowed = f"{'an integer' if kind is int else 'a number'} from {low:g} to {high:g}"
+        allowed = f"{'an integer' if kind is int else 'a number'} {self.range}"
         try:
             number = kind(text)
         except ValueError:
             raise self._error(text, allowed) from None
-        if not low <= number <= high:
+        if not low <= number <= high or 0.0 < number < self.least:
             raise self._error(text, allowed)
         return number
 
@@ -121,7 +125,7 @@ PARAMETERS = (
     Argument("register_range", "lower", "General purpose registers of the driver. lower: 0 to 23. upper: 24 to 47, for robots on "
              "which a fieldbus uses the lower registers.", ("lower", "upper")),
     Argument("watchdog_frequency", 10.0, "Minimum rate in Hz of the driver's heartbeats. The robot stops the arm after "
-             "1/watchdog_frequency s without one. 0 disables the watchdog.", limits=(0.0, 50.0)),
+             "1/watchdog_frequency s without one. 0 disables the watchdog.", limits=(0.0, 50.0), least=1.0),
     Argument("restart_program", True, "Restarts the control program after it was stopped. The interrupted motion is not resumed."),
     Argument("on_busy", "reject", "What happens to a motion goal while another motion runs. reject: it is rejected. preempt: it "
              "stops the running motion.", ("reject", "preempt")),

@@ -55,7 +55,7 @@ class Rejected(_Coded):
 
 
 class CommandFailed(_Coded):
-    """A goal that was accepted and did not succeed. The arm is at standstill.
+    """A goal that was accepted and did not succeed. The message says why, and if the arm may still move.
 
     `result` is the result message, which contains the final state of the arm.
     """

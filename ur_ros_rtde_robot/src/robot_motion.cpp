@@ -21,7 +21,8 @@ Expected<Lease> Robot::acquire(Claim claim)
 }
 
 Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
-                                          const std::stop_token & stop)
+                                          const std::stop_token & stop,
+                                          const std::function<bool()> & may_wait)
 {
   const auto deadline = Permit::Clock::now() + timeout;
   const Generation begin = generation();
@@ -37,7 +38,8 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::mill
       return impl_->stopper.wait_until_idle(deadline, stop);
     }
     const bool returns = had_yielded || generation().ended_by_driver != begin.ended_by_driver;
-    return returns && is_continued(begin) && impl_->wait_for_control_program(deadline);
+    return returns && is_continued(begin) && (!may_wait || may_wait()) &&
+           impl_->wait_for_control_program(deadline);
   };
   return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, stop);
 }

@@ -242,8 +242,10 @@ Status CommandGoal::acquire()
   if (lease_ || command_->traits.resource == Resource::none) {
     return {};
   }
-  auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token());
-  if (!command_->traits.preempts_all) {  // a stop is executed in every state
+  const bool preempts_all = command_->traits.preempts_all;  // a stop, which is executed in every state
+  auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token(),
+                                          [&] { return preempts_all || is_not_overtaken(); });
+  if (!preempts_all) {
     if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
       return not_overtaken;  // also names the cause if there is no lease
     }

@@ -91,6 +91,21 @@ std::string declare_model(rcl_cxx::Node & node)
                              model, arm_models()));
 }
 
+double declare_watchdog_frequency(rcl_cxx::Node & node, double value)
+{
+  const double frequency =
+      declare_number(node, "watchdog_frequency", value, 0.0, max_watchdog_frequency,
+                     "Hz: the robot stops the arm after 1/watchdog_frequency s without a heartbeat of this "
+                     "node; 0: no watchdog");
+  if (frequency != 0.0 && frequency < min_watchdog_frequency) {
+    throw rcl_cxx::ParameterError(
+        "watchdog_frequency",
+        fmt::format("parameter watchdog_frequency is {} Hz, it must be from {} to {} Hz, or 0 for no watchdog",
+                    frequency, min_watchdog_frequency, max_watchdog_frequency));
+  }
+  return frequency;
+}
+
 StreamOptions declare_teleoperation(rcl_cxx::Node & node)
 {
   StreamOptions options;
@@ -201,10 +216,7 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
   robot.silence_limit = declare_silence_limit(node);
   robot.realtime_priority = declare_realtime_priority(node);
-  robot.watchdog_frequency =
-      declare_number(node, "watchdog_frequency", robot.watchdog_frequency, 0.0, max_watchdog_frequency,
-                     "Hz: the robot stops the arm after 1/watchdog_frequency s without a heartbeat of this "
-                     "node; 0: no watchdog");
+  robot.watchdog_frequency = declare_watchdog_frequency(node, robot.watchdog_frequency);
   robot.restart_program = node.declare_parameter(
       "restart_program", true,
       read_only_descriptor("Restart the control program after it was stopped. Interrupted motions are never "

@@ -12,6 +12,6 @@ def scenario(cell, example):
     return disturb(cell, example, CONTROLLER_DEATH)
 
 
-def test_controller_death_aborts_the_goal_with_the_arm_at_rest(plugin, outcome):
+def test_controller_death_aborts_the_goal(plugin, outcome):
     if outcome is None:
         pytest.skip("ends immediately")

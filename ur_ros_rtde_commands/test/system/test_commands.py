@@ -218,6 +218,19 @@ def test_set_payload_and_speed_slider_take_effect(robot, simulator):
     robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
 
 
+def test_the_speed_slider_makes_a_running_motion_faster(robot, simulator):
+    def turns_with(speed):
+        return simulator.state()["target"]["velocity"][0] == pytest.approx(speed, rel=0.01)
+
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=0.1).succeeded()
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(2.0), speed=0.5)
+    wait_for(lambda: turns_with(0.05), 10.0, "a tenth of the speed")
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
+    wait_for(lambda: turns_with(0.5), 10.0, "the whole speed")
+    motion.cancel()
+    motion.wait_for_result()
+
+
 def test_zero_ft_sensor_reads_zero_afterwards(robot):
     result = robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     assert abs(result.wrench.force.z) < 5.0

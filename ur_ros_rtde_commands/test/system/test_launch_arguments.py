@@ -156,6 +156,7 @@ def test_every_default_and_every_choice_is_a_valid_value():
     ("rtde_frequency", "nan", 'rtde_frequency is "nan", it must be a number from 1 to 500'),
     ("urcap_port", "70000", 'urcap_port is "70000", it must be an integer from 1 to 65535'),
     ("urcap_port", "50002.5", 'urcap_port is "50002.5", it must be an integer'),
+    ("watchdog_frequency", "0.5", 'watchdog_frequency is "0.5", it must be a number from 1 to 50, or 0'),
     ("restart_program", "yes", 'restart_program is "yes", it must be one of: true, false'),
     ("plugins", "move_j", 'plugins is "move_j", it must be a list of names'),
     ("plugins", "[", 'plugins is "[", it must be a list of names'),

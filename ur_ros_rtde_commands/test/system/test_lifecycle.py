@@ -39,6 +39,7 @@ def test_a_missing_address_is_reported_with_an_example(name):
     ("command_server", "urcap_port:=70000", "urcap_port"),
     ("command_server", "watchdog_frequency:=true", "watchdog_frequency"),
     ("command_server", "watchdog_frequency:=60.0", "50"),
+    ("command_server", "watchdog_frequency:=0.5", "from 1 to 50 Hz, or 0 for no watchdog"),
     ("command_server", "realtime_priority:=100", "99"),
     ("robot_state_receiver", "realtime_priority:=-1", "realtime_priority"),
 ])
@@ -304,6 +305,16 @@ def test_dashboard_stop_ends_a_goal_that_waits_for_the_control_program(simulator
     simulator.control("remote_control")
     client.send(DashboardCommand, "dashboard/stop").succeeded()
     _, result = waiting.wait_for_result()
+    assert result.error_code == ErrorCode.PREEMPTED and "the arm was stopped" in result.message, result.message
+
+
+def test_stop_ends_a_goal_that_waits_for_the_control_program_at_once(simulator, client, preempting):
+    preempting("direct_torque")
+    simulator.control("remote_control", on=False)  # so that the control program is not started again
+    waiting = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.6)
+    wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 10.0, "the end of the program")
+    client.send(Stop, "stop").succeeded()
+    _, result = waiting.wait_for_result(3.0)  # without the stop, it waits for the program for 6 s
     assert result.error_code == ErrorCode.PREEMPTED and "the arm was stopped" in result.message, result.message
 
 

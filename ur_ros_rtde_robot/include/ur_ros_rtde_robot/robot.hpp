@@ -81,11 +81,12 @@ class Robot {
   /// way, nobody guides the arm by hand, and no other holder is in the way.
   Expected<Lease> acquire(Claim claim);
   /// The same, after preempting the holders that are in the way. Waits up to `timeout`, or until `stop`, for
-  /// them, for the stop that they lead to, and for the control program if that stop has ended it. A safety
-  /// stop, or an end of the program that this driver has not brought about, is an error at once: the arm must
-  /// not move when it is over.
+  /// them, for the stop that they lead to, and while `may_wait` for the control program if that stop has ended
+  /// it. A safety stop, or an end of the program that this driver has not brought about, is an error at once:
+  /// the arm must not move when it is over.
   Expected<Lease> acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
-                                     const std::stop_token & stop = {});
+                                     const std::stop_token & stop = {},
+                                     const std::function<bool()> & may_wait = {});
   /// Success if acquire() would grant the claim to a caller that preempts all holders.
   Status may_use(const Claim & claim) const;
   /// The claim of the holder that a claim on `resource` conflicts with.
