@@ -250,7 +250,7 @@ TEST_F(ActionServerTest, RejectsGoalsDuringShutdown)
 TEST_F(ActionServerTest, ForgetsResultsAfterTimeout)
 {
   rcl_cxx::ActionServerOptions options;
-  options.result_timeout = std::chrono::milliseconds(100);
+  options.result_timeout = std::chrono::seconds(2);
   serve(options);
   const auto goal = send(5);
   EXPECT_TRUE(accepted(0)->succeed());

@@ -290,7 +290,7 @@ int run(int argc, char ** argv)
       });
   Counting counting(*node, "fibonacci");
   rcl_cxx::ActionServerOptions short_lived;
-  short_lived.result_timeout = milliseconds(300);
+  short_lived.result_timeout = milliseconds(1500);
   Counting forgetful(*node, "forgetful", short_lived);
   rcl_cxx::ActionServerOptions on_demand;
   on_demand.creation_callback_group = node->create_callback_group();

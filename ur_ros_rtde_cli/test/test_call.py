@@ -145,7 +145,7 @@ def test_a_signal_cancels_the_goal_and_prints_the_final_state(at_home, number):
 
 
 def test_timeout_cancels_the_goal(at_home):
-    process = Process(["timeout", "6", *slow_motion()])
+    process = Process(["timeout", "15", *slow_motion(speed=0.05)])
     wait_until_moving(at_home)
     assert process.wait(30.0) == 124, process.output()
     assert at_home.state()["at_rest"]

@@ -13,7 +13,7 @@ import pytest
 import yaml
 from support import HOME, TIMEOUT_FACTOR, Process, find_program, simulated_robot, wait_for
 
-DISCOVERY = str(4.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
+DISCOVERY = str(8.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
 EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102
 
 
@@ -40,9 +40,9 @@ def goal(**fields):
     return yaml.safe_dump(fields, default_flow_style=True, width=1000).strip()
 
 
-def slow_motion():
+def slow_motion(speed=0.2):
     away = [HOME[0] - 2.0, *HOME[1:]]
-    return [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--quiet", goal(joint_positions=away, speed=0.2)]
+    return [find_program("ur_ros_rtde_cli", "ur"), "call", "move_j", "--quiet", goal(joint_positions=away, speed=speed)]
 
 
 def wait_until_moving(simulator):

@@ -34,6 +34,7 @@ def test_grips_an_object_and_ends_with_its_sensor(gripper, simulator):
     result = goal.succeeded()
     assert width(simulator) == 10.0
     assert (STROKE - 10.0) / SPEED - 0.05 < result.duration < 5.0
+    wait_for(lambda: goal.feedback, 10.0, "the feedback, which may come after the result")
     assert [feedback.sensor_reached for feedback in goal.feedback] == [True]
 
 

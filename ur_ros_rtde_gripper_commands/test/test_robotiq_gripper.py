@@ -39,6 +39,7 @@ def test_activation_moves_the_fingers_once(robot, simulator):
     assert open_and_active(simulator) and max(feedback.position for feedback in goal.feedback) > 200
     again = robot.send(RobotiqActivate, "robotiq_activate")
     assert "active already" in again.succeeded().message
+    wait_for(lambda: again.feedback, 10.0, "the feedback, which may come after the result")
     assert max(feedback.position for feedback in again.feedback) == 0
 
 

@@ -96,7 +96,9 @@ Locked<ur_rtde::RTDEControlInterface> Robot::control(const Lease & lease)
   if (const auto control = impl_->interfaces.control()) {
     return control->permitted_by(permission(lease));
   }
-  throw RobotError(impl_->unavailable_error());
+  const bool has_yielded = impl_->manager.control_owner() == ControlOwner::script;
+  const Status valid = lease && !has_yielded ? is_valid(lease) : Status();
+  throw RobotError(valid ? impl_->unavailable_error() : valid.error());
 }
 
 Locked<ur_rtde::RTDEControlInterface> Robot::control_for_queries() const

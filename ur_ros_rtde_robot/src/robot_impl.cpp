@@ -183,6 +183,9 @@ Status Robot::Impl::motion_possible() const
     return tl::unexpected(program_ended_error());
   }
   if (!control) {
+    if (auto why = manager.replacement()) {
+      return tl::unexpected(*std::move(why));
+    }
     auto why = unavailable_error();
     if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
       why = {ErrorCode::link_lost,

@@ -20,12 +20,10 @@ Expected<Lease> Robot::acquire(Claim claim)
   return impl_->arbiter.acquire(std::move(claim), [&] { return impl_->admit(asked); });
 }
 
-Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
-                                          const std::stop_token & stop,
-                                          const std::function<bool()> & may_wait)
+Expected<Lease> Robot::acquire_preempting(const Claim & claim, const Waiting & waiting)
 {
-  const auto deadline = Permit::Clock::now() + timeout;
-  const Generation begin = generation();
+  const auto deadline = Permit::Clock::now() + waiting.timeout;
+  const Generation begin = waiting.since.value_or(generation());
   bool was_stopping = false;
   bool had_yielded = false;  // the control program, to a script
   const auto admit = [&] {
@@ -35,13 +33,13 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, std::chrono::mill
   };
   const auto retry = [&] {
     if (was_stopping) {
-      return impl_->stopper.wait_until_idle(deadline, stop);
+      return impl_->stopper.wait_until_idle(deadline, waiting.stop);
     }
     const bool returns = had_yielded || generation().ended_by_driver != begin.ended_by_driver;
-    return returns && is_continued(begin) && (!may_wait || may_wait()) &&
-           impl_->wait_for_control_program(deadline);
+    const bool may_go_on = !waiting.may_go_on || waiting.may_go_on();
+    return returns && may_go_on && is_continued(begin) && impl_->wait_for_control_program(deadline);
   };
-  return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, stop);
+  return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, waiting.stop);
 }
 
 Status Robot::may_use(const Claim & claim) const

@@ -1,8 +1,11 @@
 // Who may move the arm, and what takes it out of the hands of its holder. Times are those of the simulated
 // robot, which is slow, so that delays of a busy host are short in its time.
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <thread>
+#include <utility>
 
 #include "robot_fixture.hpp"
 
@@ -335,16 +338,28 @@ TEST_F(LeaseTest, TheEndOfAHolderCanLeaveModesActive)
 
 TEST_F(LeaseTest, AHolderThatBrakesByItselfMayFinish)
 {
-  const Lease lease = acquire();
-  move(lease);
-  const Robot::Braking braking(lease);
-  robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
-  for (int i = 0; i < 40; ++i) {
-    braking.sent();
-    std::this_thread::sleep_for(2ms);
+  using Clock = std::chrono::steady_clock;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const Lease lease = acquire();
+    move(lease);
+    const Robot::Braking braking(lease);
+    auto last = Clock::now();
+    Clock::duration longest{};
+    robot->request_stop(lease, {}, Error{ErrorCode::canceled, "canceled"}, 10s);
+    for (int i = 0; i < 40; ++i) {
+      braking.sent();
+      longest = std::max(longest, Clock::now() - std::exchange(last, Clock::now()));
+      std::this_thread::sleep_for(2ms);
+    }
+    if (longest < 8ms) {  // otherwise this thread was late, and the stop has rightly taken over
+      EXPECT_TRUE(robot->may_continue(lease));
+      EXPECT_FALSE(robot->is_stopping());
+      return;
+    }
+    ASSERT_TRUE(robot->stop_motion());
+    ASSERT_TRUE(becomes_ready());
   }
-  EXPECT_TRUE(robot->may_continue(lease));
-  EXPECT_FALSE(robot->is_stopping());
+  FAIL() << "this thread was late in every attempt";
 }
 
 TEST_F(LeaseTest, AHolderThatDoesNotBeginToBrakeIsStopped)
@@ -433,7 +448,7 @@ TEST_F(LeaseTest, IsNotGrantedToAClaimThatWaitedWhenTheSafeguardStopIsOver)
   held = std::move(*robot->acquire(holder));
   move(*held);
   std::future<Expected<Lease>> next =
-      std::async(std::launch::async, [&] { return robot->acquire_preempting(claim(), 60s); });
+      std::async(std::launch::async, [&] { return robot->acquire_preempting(claim(), {.timeout = 60s}); });
   ASSERT_TRUE(eventually([&] { return asked.load(); }));
   controller.control({{"command", "safeguard"}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::safeguard_stop));
@@ -455,7 +470,7 @@ TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm
   move(*held);
   std::atomic<bool> was_moving{false};
   std::future<Expected<Lease>> next = std::async(std::launch::async, [&] {
-    auto lease = robot->acquire_preempting(claim(), 60s);
+    auto lease = robot->acquire_preempting(claim(), {.timeout = 60s});
     was_moving = robot->is_moving();
     return lease;
   });
@@ -474,6 +489,25 @@ TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm
   EXPECT_TRUE(stays_at_rest());
 }
 
+/// The thread of the goal that preempts is late: the stop has ended the program before.
+TEST_F(LeaseTest, IsGrantedToALateClaimAfterAStopThatHasEndedTheProgram)
+{
+  const Generation since = robot->generation();
+  {
+    const auto lease = robot->acquire(claim());
+    ASSERT_TRUE(lease) << lease.error().message;
+    auto q = robot->receive()->getActualQ();
+    q[0] += 3.0;
+    const std::jthread blocked([&] { robot->control(*lease)->moveJ(q, 0.8, 2.0); });
+    ASSERT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.7; }));
+    const auto stopped = robot->stop_motion();
+    ASSERT_TRUE(stopped) << stopped.error().message;
+    ASSERT_EQ(stopped->means, StopMeans::program_stopped);
+  }
+  const auto next = robot->acquire_preempting(claim(), {.timeout = 20s, .since = since});
+  EXPECT_TRUE(next) << next.error().message;
+}
+
 TEST_F(LeaseTest, IsGrantedAfterTheStopOfThePreviousHolder)
 {
   std::optional<Lease> held;
@@ -488,7 +522,7 @@ TEST_F(LeaseTest, IsGrantedAfterTheStopOfThePreviousHolder)
   };
   held = std::move(*robot->acquire(holder));
   move(*held);
-  const auto next = robot->acquire_preempting(claim(), 10s);
+  const auto next = robot->acquire_preempting(claim(), {.timeout = 10s});
   ASSERT_TRUE(next) << next.error().message;
   EXPECT_TRUE(at_rest());
   EXPECT_TRUE(robot->may_continue(*next));

@@ -303,6 +303,18 @@ TEST_F(RobotMotionTest, ACommandOnASilentConnectionIsALostConnection)
   EXPECT_TRUE(becomes_ready_again());
 }
 
+/// Before the status has changed: a call keeps the control interface from being closed.
+TEST_F(RobotMotionTest, NamesTheProgramThatHasReplacedItsOwnAtEveryMoment)
+{
+  make_both();
+  const auto call = robot->control_for_queries().hold();
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  Status possible;
+  ASSERT_TRUE(eventually([&] { return !(possible = robot->motion_possible()); }));
+  EXPECT_EQ(possible.error().code, ErrorCode::program_stopped) << possible.error().message;
+}
+
 TEST_F(RobotMotionTest, NamesTheLostConnectionAfterWhichItsProgramHasEnded)
 {
   make_both();

@@ -214,6 +214,31 @@ TEST_F(StopTest, EndsAForeignProgramThatStandsIfAsked)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(StopTest, EndsAForeignProgramThatLateSamplesDoNotShow)
+{
+  auto options = robot_options();
+  options.silence_limit = 5000ms;
+  options.watchdog_frequency = 0.0;
+  options.restart_program = false;
+  make_both(options);
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  controller.control(
+      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  const auto plays = [&] { return controller.state().at("program").at("state") == "PLAYING"; };
+  ASSERT_TRUE(eventually(plays));
+  ASSERT_TRUE(
+      eventually([&] { return std::chrono::steady_clock::now() - robot->latest()->received > 300ms; }));
+  ASSERT_FALSE(robot->latest()->is_program_running());
+  StopOptions stop;
+  stop.ends_foreign_program = true;
+  const auto stopping = robot->begin_stop(stop, stopped_by_the_driver());
+  EXPECT_TRUE(eventually([&] { return !plays(); }));
+  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+  EXPECT_TRUE(stopping.get());
+}
+
 TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)
 {
   make_both();

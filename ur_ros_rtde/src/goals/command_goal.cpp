@@ -243,8 +243,11 @@ Status CommandGoal::acquire()
     return {};
   }
   const bool preempts_all = command_->traits.preempts_all;  // a stop, which is executed in every state
-  auto lease = robot().acquire_preempting(claim(), preemption_timeout, stop_request().token(),
-                                          [&] { return preempts_all || is_not_overtaken(); });
+  auto lease = robot().acquire_preempting(
+      claim(),
+      {.timeout = preemption_timeout, .since = received_, .stop = stop_request().token(), .may_go_on = [&] {
+         return preempts_all || is_not_overtaken();
+       }});
   if (!preempts_all) {
     if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
       return not_overtaken;  // also names the cause if there is no lease

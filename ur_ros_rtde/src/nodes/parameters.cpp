@@ -100,8 +100,9 @@ double declare_watchdog_frequency(rcl_cxx::Node & node, double value)
   if (frequency != 0.0 && frequency < min_watchdog_frequency) {
     throw rcl_cxx::ParameterError(
         "watchdog_frequency",
-        fmt::format("parameter watchdog_frequency is {} Hz, it must be from {} to {} Hz, or 0 for no watchdog",
-                    frequency, min_watchdog_frequency, max_watchdog_frequency));
+        fmt::format(
+            "parameter watchdog_frequency is {} Hz, it must be from {} to {} Hz, or 0 for no watchdog",
+            frequency, min_watchdog_frequency, max_watchdog_frequency));
   }
   return frequency;
 }

@@ -43,6 +43,7 @@ def interfaces(simulator, client):
 
         wanted = {name for names in ACTIONS for name in names[1]}
         wait_for(lambda: wanted <= actions(), 30.0, "the actions of the driver")
+        wait_for(lambda: client.node.count_subscribers("/twist") > 0, 30.0, "the topics to which the driver listens")
         topics = {name.lstrip("/") for name, _ in client.node.get_topic_names_and_types()}
         services = {name.lstrip("/") for name, _ in client.node.get_service_names_and_types()}
         parameters = {name for node in NODES for name in client.call(ListParameters, f"{node}/list_parameters").result.names}

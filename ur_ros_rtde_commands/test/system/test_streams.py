@@ -168,8 +168,12 @@ def test_a_goal_is_rejected_while_a_topic_controls_the_arm_and_accepted_afterwar
         assert not goal.accepted
         rejection = robot.rejection(goal)
         assert rejection.error_code == ErrorCode.BUSY and "/twist" in rejection.message, rejection
-    pause()
-    robot.send(MoveJ, "move_j", joint_positions=HOME).succeeded()
+
+    def accepted():
+        goal = robot.send(MoveJ, "move_j", joint_positions=HOME)
+        return goal.accepted and goal
+
+    wait_for(accepted, 10.0, "the end of the session").succeeded()
 
 
 def test_messages_are_ignored_while_a_goal_moves_the_arm(robot, driver):
@@ -185,8 +189,9 @@ def test_messages_are_ignored_while_a_goal_moves_the_arm(robot, driver):
 
 
 def test_messages_are_ignored_while_another_topic_controls_the_arm(robot, driver):
+    sessions = len(log_lines(driver, "/twist: teleoperation started"))
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base")):
-        time.sleep(0.3)
+        wait_for(lambda: len(log_lines(driver, "/twist: teleoperation started")) > sessions, 15.0, "the session")
         before = len(log_lines(driver, "/servo_joint: messages are ignored"))
         with Publisher(robot, JointState, "servo_joint", lambda t: joint_message(home_plus(min(0.2, 0.2 * t)))):
             wait_for(lambda: len(log_lines(driver, "/servo_joint: messages are ignored")) > before, 15.0, "the warning")

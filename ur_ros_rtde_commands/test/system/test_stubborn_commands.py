@@ -94,6 +94,7 @@ def test_what_a_command_of_a_mode_leaves_turning_is_stopped(cell):
 
 def test_a_goal_whose_check_was_overtaken_by_a_stop_is_rejected(cell):
     simulator, _driver, client = cell
+    client.send(Stop, "stop").succeeded()  # the server is known from now on
     goal = client.send(SpeedJ, "slow_to_check", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0, time=4.0)
     client.send(Stop, "stop").succeeded()
     assert not goal.accepted and "the arm was stopped" in client.rejection(goal).message

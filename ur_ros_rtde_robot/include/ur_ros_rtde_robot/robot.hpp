@@ -80,13 +80,17 @@ class Robot {
   /// Who may use the robot. A claim that moves the arm is granted if the robot is ready, no stop is under
   /// way, nobody guides the arm by hand, and no other holder is in the way.
   Expected<Lease> acquire(Claim claim);
-  /// The same, after preempting the holders that are in the way. Waits up to `timeout`, or until `stop`, for
-  /// them, for the stop that they lead to, and while `may_wait` for the control program if that stop has ended
-  /// it. A safety stop, or an end of the program that this driver has not brought about, is an error at once:
-  /// the arm must not move when it is over.
-  Expected<Lease> acquire_preempting(const Claim & claim, std::chrono::milliseconds timeout,
-                                     const std::stop_token & stop = {},
-                                     const std::function<bool()> & may_wait = {});
+  /// What a claim that preempts waits for.
+  struct Waiting {
+    std::chrono::milliseconds timeout;
+    std::optional<Generation> since = {};       ///< in which the caller was told to claim; default: now
+    std::stop_token stop = {};                  ///< ends the wait
+    std::function<bool()> may_go_on = nullptr;  ///< or ends the wait for the control program; default: it may
+  };
+  /// The same, after preempting the holders that are in the way. Waits for them, for the stop that they lead
+  /// to, and for the control program if such a stop has ended it. A safety stop, or an end of the program
+  /// that this driver has not brought about, is an error at once: the arm must not move when it is over.
+  Expected<Lease> acquire_preempting(const Claim & claim, const Waiting & waiting);
   /// Success if acquire() would grant the claim to a caller that preempts all holders.
   Status may_use(const Claim & claim) const;
   /// The claim of the holder that a claim on `resource` conflicts with.

@@ -123,6 +123,7 @@ class MotionStopper {
   /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost,
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
+  /// Or may play, because the samples are late.
   bool foreign_program_plays() const;
   /// Through the dashboard server alone: the program may have no watchdog.
   Expected<StopMeans> end_foreign_program(const StopOptions & options);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "connection/dashboard_request.hpp"
+#include "connection/skew.hpp"
 #include "motion/motion_blocker.hpp"
 #include "motion/motion_stopper.hpp"
 
@@ -131,7 +132,10 @@ Expected<StopMeans> MotionStopper::end_foreign_program(const StopOptions & optio
 
 bool MotionStopper::foreign_program_plays() const
 {
-  return state_.latest().value_or(Sample{}).is_program_running() && program_.has_foreign_program();
+  const Sample sample = state_.latest().value_or(Sample{});
+  // Late samples do not show yet what has begun.
+  const bool is_late = Clock::now() - sample.received > max_skew;
+  return (is_late || sample.is_program_running()) && program_.has_foreign_program();
 }
 
 bool MotionStopper::may_go_on(const Sample & sample, Activities started) const

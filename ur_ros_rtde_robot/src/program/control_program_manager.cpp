@@ -122,6 +122,17 @@ bool ControlProgramManager::has_foreign_program() const
          state == ProgramState::in_use || state == ProgramState::in_use_after_end;
 }
 
+std::optional<Error> ControlProgramManager::replacement() const
+{
+  const auto [state, observation] = snapshot();
+  if (state != ProgramState::foreign) {
+    return std::nullopt;
+  }
+  const RobotStatus status =
+      program_status(state, observation, receiver_.latest().value_or(Sample{}).runtime_state, options_);
+  return Error{status.cause, status.message};
+}
+
 std::pair<ProgramState, ProgramObservation> ControlProgramManager::snapshot() const
 {
   const std::lock_guard lock(mutex_);

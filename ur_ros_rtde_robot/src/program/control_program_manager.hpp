@@ -52,6 +52,8 @@ class ControlProgramManager {
   bool has_left_program() const;
   /// A program that runs on the robot is not known to be of this driver.
   bool has_foreign_program() const;
+  /// Says so, if another program has replaced the control program.
+  std::optional<Error> replacement() const;
 
   /// To be called with each sample on the receiving thread.
   void on_sample(const Sample & sample);

@@ -24,12 +24,36 @@ void add_name(NameTable & table, const std::string & note, const std::string & n
   }
 }
 
-std::string code_list(const std::vector<std::string> & names)
+std::string note_rows(const NameTable & table)
 {
-  return fmt::format("`{}`", fmt::join(names, " "));
+  std::string text;
+  for (const auto & [note, names] : table) {
+    std::string second = note;
+    for (const std::string & cell : code_cells(names)) {
+      text += fmt::format("| {} | {} |\n", cell, std::exchange(second, ""));
+    }
+  }
+  return text;
 }
 
 }  // namespace
+
+std::vector<std::string> code_cells(const std::vector<std::string> & names)
+{
+  constexpr std::size_t width = 118;  // between the two backticks
+  std::vector<std::string> cells;
+  for (const std::string & name : names) {
+    if (cells.empty() || cells.back().size() + 1 + name.size() > width) {
+      cells.push_back(name);
+    } else {
+      cells.back() += " " + name;
+    }
+  }
+  for (std::string & cell : cells) {
+    cell = fmt::format("`{}`", cell);
+  }
+  return cells;
+}
 
 std::string function_reference(const urscript::Library & library)
 {
@@ -42,15 +66,8 @@ std::string function_reference(const urscript::Library & library)
                builtin.name);
     }
   }
-  std::string text = "| simplified functions | simplification |\n|---|---|\n";
-  for (const auto & [note, names] : simplifications) {
-    text += fmt::format("| {} | {} |\n", code_list(names), note);
-  }
-  text += "\n| rejected functions | reason |\n|---|---|\n";
-  for (const auto & [reason, names] : rejections) {
-    text += fmt::format("| {} | {} |\n", code_list(names), reason);
-  }
-  return text;
+  return "| simplified functions | simplification |\n|---|---|\n" + note_rows(simplifications) +
+         "\n| rejected functions | reason |\n|---|---|\n" + note_rows(rejections);
 }
 
 }  // namespace ur_simulator

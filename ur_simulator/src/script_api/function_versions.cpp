@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "script_api/function_reference.hpp"
 
 namespace ur_simulator {
 
@@ -84,6 +90,12 @@ constexpr FunctionGroup version_groups[] = {
      "get_mass_matrix get_target_joint_accelerations"},
 };
 
+std::vector<std::string> names_of(const FunctionGroup & group)
+{
+  std::istringstream names(group.names);
+  return {std::istream_iterator<std::string>(names), {}};
+}
+
 std::string version_text(const PolyscopeVersion & version)
 {
   if (version == always) {
@@ -103,9 +115,8 @@ std::shared_ptr<const urscript::Library> with_functions_of(const PolyscopeVersio
 {
   auto reduced = std::make_shared<urscript::Library>(library);
   for (const FunctionGroup & group : version_groups) {
-    std::istringstream names(group.names);
-    for (std::string name; names >> name;) {
-      if (!group.since.is_met_by(version)) {
+    if (!group.since.is_met_by(version)) {
+      for (const std::string & name : names_of(group)) {
         reduced->hide(name);
       }
     }
@@ -117,8 +128,11 @@ std::string function_version_reference()
 {
   std::string text = "| e-Series from | CB3 from | functions |\n|---|---|---|\n";
   for (const FunctionGroup & group : version_groups) {
-    text += fmt::format("| {} | {} | `{}` |\n", version_text(group.since.e_series),
-                        version_text(group.since.cb3), group.names);
+    std::string versions =
+        fmt::format("{} | {}", version_text(group.since.e_series), version_text(group.since.cb3));
+    for (const std::string & cell : code_cells(names_of(group))) {
+      text += fmt::format("| {} | {} |\n", std::exchange(versions, " | "), cell);
+    }
   }
   return text;
 }

@@ -253,6 +253,7 @@ bool ScriptMonitor::complete_if_ended()
   const bool stopped = sample->runtime_state == RuntimeState::stopped &&
                        (has_played_ || now - *begin_seen_ > (end_seen_ ? max_skew / 5 : max_skew));
   if (!stopped) {
+    stop_seen_.reset();  // what had been seen was older than the script
     return false;
   }
   stop_seen_ = stop_seen_.value_or(now);
