@@ -8,7 +8,7 @@ BACKGROUND = True
 PAGE = (ROOT / "docs" / "use" / "safety.md").read_text()
 ACTIONS = (ROOT / "docs" / "use" / "commands" / "README.md").read_text().split("\nThe name of an action")[0]
 # They read, show something on the teach pendant, or write a log. Those of the group queries only read.
-HARMLESS = {"get_freedrive_status", "robotiq_get_status", "sg_get_width", *(f"dashboard/{name}" for name in (
+HARMLESS = {"get_freedrive_status", "robotiq_get_status", "sg_get_width", "tool_contact", *(f"dashboard/{name}" for name in (
     "power_on", "running", "program_state", "get_loaded_program", "is_program_saved", "close_safety_popup", "robot_mode",
     "safety_mode", "safety_status", "popup", "close_popup", "add_to_log", "is_in_remote_control", "get_operational_mode",
     "get_user_role", "get_robot_model", "get_serial_number", "polyscope_version", "version", "generate_flight_report",
