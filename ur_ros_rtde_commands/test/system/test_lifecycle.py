@@ -314,7 +314,10 @@ def test_stop_ends_a_goal_that_waits_for_the_control_program_at_once(simulator, 
     waiting = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=0.6)
     wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 10.0, "the end of the program")
     client.send(Stop, "stop").succeeded()
-    _, result = waiting.wait_for_result(3.0)  # without the stop, it waits for the program for 6 s
+    try:
+        _, result = waiting.wait_for_result(3.0)  # without the stop, it waits for the program for 6 s
+    finally:
+        simulator.control("remote_control")
     assert result.error_code == ErrorCode.PREEMPTED and "the arm was stopped" in result.message, result.message
 
 

@@ -281,7 +281,8 @@ def test_servo_without_a_time_uses_the_default_speeds(robot, simulator, action, 
     recorder.record_until_finished(goal)
     goal.succeeded()
     # The peak speed of an idle host follows from the number of setpoints; test_servo_profile.cpp has the exact values.
-    assert recorder.cycles_with_setpoint() < 1.01 * cycles
+    host_was_late = recorder.gaps(longer_than=4)  # after which the arm goes on more slowly
+    assert host_was_late or recorder.cycles_with_setpoint() < 1.01 * cycles
     assert recorder.cycles_from_first_to_last_setpoint() > 0.98 * cycles
     assert speed_ratio(recorder) < 1.03
 
