@@ -42,15 +42,22 @@ bool is_watchdog_frequency(double frequency)
 
 const RobotOptions & checked(const RobotOptions & options)
 {
-  if (options.watchdog_frequency != 0.0 && !is_watchdog_frequency(options.watchdog_frequency)) {
-    throw std::invalid_argument(
-        fmt::format("watchdog_frequency is {} Hz: it must be from {} to {} Hz, or 0 for no watchdog",
-                    options.watchdog_frequency, min_watchdog_frequency, max_watchdog_frequency));
+  if (const auto problem = watchdog_frequency_problem(options.watchdog_frequency); !problem.empty()) {
+    throw std::invalid_argument(problem);
   }
   return options;
 }
 
 }  // namespace
+
+std::string watchdog_frequency_problem(double frequency)
+{
+  if (frequency == 0.0 || is_watchdog_frequency(frequency)) {
+    return {};
+  }
+  return fmt::format("watchdog_frequency is {} Hz: it must be from {} to {} Hz, or 0 for no watchdog",
+                     frequency, min_watchdog_frequency, max_watchdog_frequency);
+}
 
 Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
     : options(checked(robot_options)),

@@ -61,6 +61,11 @@ nlohmann::json Controller::control(const nlohmann::json & request)
   return reply;
 }
 
+void Controller::run_other_program()
+{
+  control({{"command", "run_script"}, {"script", "def other():\n  while True:\n    sync()\n  end\nend\n"}});
+}
+
 LogFunction Log::function()
 {
   return [this](LogLevel level, const std::string & line) {

@@ -37,6 +37,8 @@ class Controller {
   void stop() { controller_.reset(); }
   /// Sends a request to the control port; the test fails if the simulator rejects it.
   nlohmann::json control(const nlohmann::json & request);
+  /// Of an operator: `other`, which does not end by itself.
+  void run_other_program();
   nlohmann::json state() { return controller_->state(); }
 
  private:

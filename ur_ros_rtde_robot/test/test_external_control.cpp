@@ -259,8 +259,7 @@ TEST_F(ExternalControlTest, WaitsForPlayAfterAReboot)
 TEST_F(ExternalControlTest, DistinguishesTheControlProgramFromAnotherOne)
 {
   start(options());
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("not the control program") != std::string::npos;
   })) << robot->status().message;
@@ -277,8 +276,7 @@ TEST_F(ExternalControlTest, LeavesAForeignProgramAloneThatIsPaused)
   start(options());
   play();
   ASSERT_TRUE(becomes_ready());
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(eventually([&] {
     return robot->status().message.find("has replaced the control program") != std::string::npos;
   })) << robot->status().message;

@@ -33,8 +33,7 @@ TEST_F(RobotConnectionTest, BecomesReady)
 TEST_F(RobotConnectionTest, AffectsTheRobotOnlyAfterTheStart)
 {
   controller.start();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
   robot = std::make_unique<Robot>(robot_options(), log.function());
   robot->connect();

@@ -308,8 +308,7 @@ TEST_F(RobotMotionTest, NamesTheProgramThatHasReplacedItsOwnAtEveryMoment)
 {
   make_both();
   const auto call = robot->control_for_queries().hold();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   Status possible;
   ASSERT_TRUE(eventually([&] { return !(possible = robot->motion_possible()); }));
   EXPECT_EQ(possible.error().code, ErrorCode::program_stopped) << possible.error().message;

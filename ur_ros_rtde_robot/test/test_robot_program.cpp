@@ -117,8 +117,7 @@ TEST_F(RobotProgramTest, LeavesProgramStoppedWhenRestartingIsOff)
 TEST_F(RobotProgramTest, StopsProgramThatRunsWhenItConnects)
 {
   controller.start();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(eventually([&] { return controller.state().at("program").at("state") == "PLAYING"; }));
   make_robot();
   EXPECT_TRUE(becomes_ready());
@@ -128,8 +127,7 @@ TEST_F(RobotProgramTest, StopsProgramThatRunsWhenItConnects)
 TEST_F(RobotProgramTest, LeavesForeignProgramAloneThatStartsLater)
 {
   make_both();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   EXPECT_NE(robot->status().message.find("another program"), std::string::npos) << robot->status().message;
   controller.control({{"command", "stop_program"}});
@@ -142,8 +140,7 @@ TEST_F(RobotProgramTest, LeavesForeignProgramAloneThatIsPaused)
   const auto says = [&](const char * text) {
     return eventually([&] { return robot->status().message.find(text) != std::string::npos; });
   };
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(says("another program runs")) << robot->status().message;
   controller.control({{"command", "pause_program"}});
   EXPECT_TRUE(says("another program is paused")) << robot->status().message;
@@ -157,8 +154,7 @@ TEST_F(RobotProgramTest, NoticesReplacementOfItsProgramDuringAMotion)
   make_both();
   move_joints();
   const double begin = robot->latest()->controller_time;
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
   const double noticed = robot->latest()->controller_time - begin;
   RecordProperty("replaced_program_noticed_after_ms", std::to_string(1000.0 * noticed));

@@ -14,6 +14,17 @@ struct StopTest : RobotFixture {
     EXPECT_TRUE(eventually([&] { return std::abs(robot->latest()->actual_qd[0]) > 0.4; }));
     return blocked;
   }
+
+  /// With force mode on. In local control, the dashboard server does not end the program.
+  void make_both_in_local_control(double watchdog_frequency)
+  {
+    auto options = robot_options();
+    options.watchdog_frequency = watchdog_frequency;
+    make_both(options);
+    controller.control({{"command", "remote_control"}, {"on", false}});
+    ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
+                                     {0.1, 0.1, 0.1, 0.5, 0.5, 0.5}));
+  }
 };
 
 StopOptions decelerating(double joint, double linear)
@@ -224,8 +235,7 @@ TEST_F(StopTest, EndsAForeignProgramThatLateSamplesDoNotShow)
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   const auto plays = [&] { return controller.state().at("program").at("state") == "PLAYING"; };
   ASSERT_TRUE(eventually(plays));
   ASSERT_TRUE(
@@ -242,8 +252,7 @@ TEST_F(StopTest, EndsAForeignProgramThatLateSamplesDoNotShow)
 TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)
 {
   make_both();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def f():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   controller.control({{"command", "remote_control"}, {"on", false}});
   StopOptions options;
@@ -260,8 +269,7 @@ TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)
 TEST_F(StopTest, LeavesAForeignProgramAloneThatIsPaused)
 {
   make_both();
-  controller.control(
-      {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
+  controller.run_other_program();
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   controller.control({{"command", "pause_program"}});
   ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::paused; }));
@@ -358,12 +366,8 @@ TEST_F(StopTest, NamesTheWatchdogThatRuns)
 
 TEST_F(StopTest, DoesNotForgetAProgramWhoseConnectionItHasClosed)
 {
-  auto options = robot_options();
-  options.watchdog_frequency = 1.0;
-  make_both(options);
-  controller.control({{"command", "remote_control"}, {"on", false}});  // no stop by the dashboard server
-  ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
-                                   {0.1, 0.1, 0.1, 0.5, 0.5, 0.5}));
+  make_both_in_local_control(1.0);
+  ASSERT_FALSE(HasFailure());
   ASSERT_TRUE(control()->speedL({0.05, 0.0, 0.0, 0.0, 0.0, 0.0}, 1.0, 0.0));
   ASSERT_TRUE(eventually([&] { return robot->latest()->target_tcp_speed[0] > 0.049; }));
   const std::jthread blocked([control = control()] { control->speedStop(0.25); });
@@ -379,12 +383,8 @@ TEST_F(StopTest, DoesNotForgetAProgramWhoseConnectionItHasClosed)
 
 TEST_F(StopTest, DoesNotForgetAProgramThatCouldNotBeEndedForAScript)
 {
-  auto options = robot_options();
-  options.watchdog_frequency = 0.0;
-  make_both(options);
-  controller.control({{"command", "remote_control"}, {"on", false}});  // no stop by the dashboard server
-  ASSERT_TRUE(control()->forceMode({0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 0}, 2,
-                                   {0.1, 0.1, 0.1, 0.5, 0.5, 0.5}));
+  make_both_in_local_control(0.0);
+  ASSERT_FALSE(HasFailure());
   {
     const auto call = robot->control_for_queries().hold();  // nothing can end the program
     EXPECT_EQ(run_script("def s():\n  sync()\nend\n").end, ScriptEnd::rejected);

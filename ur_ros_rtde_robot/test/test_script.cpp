@@ -27,8 +27,6 @@ struct ScriptTest : RobotFixture {
            "end\n";
   }
 
-  static std::string forever() { return "def other():\n  while True:\n    sync()\n  end\nend\n"; }
-
   /// Calls `event` once, while the script moves the arm.
   ScriptOptions when_it_turns(std::function<void()> event)
   {
@@ -267,10 +265,7 @@ TEST_F(ScriptTest, MayBePausedIfItsCallerWaits)
 TEST_F(ScriptTest, LeavesAProgramAloneThatReplacesTheScript)
 {
   make_both();
-  const auto options = when_it_turns([&] {
-    controller.control(
-        {{"command", "run_script"}, {"script", "def other():\n while True:\n  sync()\n end\nend\n"}});
-  });
+  const auto options = when_it_turns([&] { controller.run_other_program(); });
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.end, ScriptEnd::stopped);
   EXPECT_NE(report.error.message.find("another program, `other`"), std::string::npos) << report.error.message;
@@ -296,7 +291,7 @@ TEST_F(ScriptTest, IsNotSentAfterAProgramThatHasReplacedTheControlProgram)
 TEST_F(ScriptTest, LeavesAProgramAloneThatHasReplacedTheControlProgram)
 {
   make_both();
-  controller.control({{"command", "run_script"}, {"script", forever()}});
+  controller.run_other_program();
   const auto report = run_script(turning());
   EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
   EXPECT_TRUE(plays()) << log.text();
@@ -311,7 +306,7 @@ TEST_F(ScriptTest, IsNotSentAfterAProgramThatBeganInItsPlace)
   ScriptOptions options;
   options.stop_reason = [&, started = false]() mutable -> std::optional<Error> {
     if (!std::exchange(started, true)) {
-      controller.control({{"command", "run_script"}, {"script", forever()}});
+      controller.run_other_program();
       EXPECT_TRUE(eventually([&] { return plays(); }));
     }
     return std::nullopt;

@@ -97,12 +97,8 @@ double declare_watchdog_frequency(rcl_cxx::Node & node, double value)
       declare_number(node, "watchdog_frequency", value, 0.0, max_watchdog_frequency,
                      "Hz: the robot stops the arm after 1/watchdog_frequency s without a heartbeat of this "
                      "node; 0: no watchdog");
-  if (frequency != 0.0 && frequency < min_watchdog_frequency) {
-    throw rcl_cxx::ParameterError(
-        "watchdog_frequency",
-        fmt::format(
-            "parameter watchdog_frequency is {} Hz, it must be from {} to {} Hz, or 0 for no watchdog",
-            frequency, min_watchdog_frequency, max_watchdog_frequency));
+  if (const auto problem = watchdog_frequency_problem(frequency); !problem.empty()) {
+    throw rcl_cxx::ParameterError("watchdog_frequency", "parameter " + problem);
   }
   return frequency;
 }

@@ -14,6 +14,8 @@ enum class ControlMode {
 constexpr double min_watchdog_frequency = 1.0;  // Hz
 /// A CB3 controller sends a package, and receives a heartbeat, every 8 ms: two within 1/50 s.
 constexpr double max_watchdog_frequency = 50.0;  // Hz
+/// What is wrong with a value of RobotOptions::watchdog_frequency; empty if nothing is.
+std::string watchdog_frequency_problem(double frequency);
 
 struct RobotOptions {
   std::string address;
