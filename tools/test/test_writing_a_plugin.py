@@ -63,7 +63,7 @@ def test_the_extension_runs_on_the_controller(workspace):
 
 def test_the_written_tests_pass(workspace):
     text = output(workspace, "python3 -m pytest")
-    assert re.search(r"\b10 passed\b", text) and "failed" not in text, text
+    assert re.search(r"\b20 passed\b", text) and "failed" not in text, text
 
 
 def test_the_new_plugins_are_listed(workspace):
@@ -76,5 +76,5 @@ def test_the_new_plugins_are_listed(workspace):
 
 
 def test_the_code_on_the_page_matches_the_written_files(workspace):
-    codes = re.findall(r"<!-- file: (\S+) -->\n```cpp\n(.*?)```", PAGE, re.S)
+    codes = re.findall(r"<!-- file: (\S+) -->\n```(?:cpp|python)\n(.*?)```", PAGE, re.S)
     assert codes and [file for file, code in codes if code not in (workspace[0] / file).read_text()] == []

@@ -45,19 +45,23 @@ _PARAMETERS = ("silence_limit:=2.0", "watchdog_frequency:=2.0")
 
 
 class Driver:
-    """A running driver. `parameters`: "name:=value". It is a context manager; stop() ends the program.
+    """A running driver. `parameters`: "name:=value". It is a context manager; stop() ends the program, start() starts it again.
 
     `lines` is what it has printed."""
 
     def __init__(self, address: str, *parameters: str, namespace: str = ""):
         program = pathlib.Path(get_package_prefix("ur_ros_rtde"), "lib", "ur_ros_rtde", "driver")
-        arguments = [str(program), "--ros-args"]
+        self._command = [str(program), "--ros-args"]
         for parameter in (f"robot_ip:={address}", *parameters):
-            arguments += ["-p", parameter]
+            self._command += ["-p", parameter]
         if namespace:
-            arguments += ["-r", f"__ns:=/{namespace.strip('/')}"]
+            self._command += ["-r", f"__ns:=/{namespace.strip('/')}"]
         self.lines: list[str] = []
-        self._process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+        self.start()
+
+    def start(self) -> None:
+        """Starts the program, as at the beginning, after stop() or kill()."""
+        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
@@ -78,6 +82,7 @@ class Driver:
         """Ends the program at once, as a crash does: the watchdog of the control program stops the arm."""
         self._process.kill()
         self._process.wait()
+        self._reader.join()
 
     def stop(self) -> None:
         """Ends the program as Ctrl-C does. Safe to call again."""
@@ -86,7 +91,8 @@ class Driver:
             try:
                 self._process.wait(_EXIT_TIMEOUT)
             except subprocess.TimeoutExpired:
-                self.kill()
+                self._process.kill()
+                self._process.wait()
         self._reader.join()
 
     def __enter__(self) -> "Driver":

@@ -97,7 +97,7 @@ Locked<ur_rtde::RTDEControlInterface> Robot::control(const Lease & lease)
     return control->permitted_by(permission(lease));
   }
   const bool has_yielded = impl_->manager.control_owner() == ControlOwner::script;
-  const Status valid = lease && !has_yielded ? is_valid(lease) : Status();
+  const Status valid = lease && !has_yielded ? may_continue(lease) : Status();
   throw RobotError(valid ? impl_->unavailable_error() : valid.error());
 }
 

@@ -26,19 +26,23 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, const Waiting & w
   const Generation begin = waiting.since.value_or(generation());
   bool was_stopping = false;
   bool had_yielded = false;  // the control program, to a script
+  bool was_ready = false;    // otherwise, something else is in the way
   const auto admit = [&] {
     was_stopping = impl_->stopper.is_stopping();
     had_yielded = impl_->manager.control_owner() == ControlOwner::script;
+    was_ready = impl_->ready_to_move().has_value();
     return impl_->admit(claim);
   };
-  const auto retry = [&] {
+  const auto wait = [&] {
     if (was_stopping) {
       return impl_->stopper.wait_until_idle(deadline, waiting.stop);
     }
     const bool returns = had_yielded || generation().ended_by_driver != begin.ended_by_driver;
-    const bool may_go_on = !waiting.may_go_on || waiting.may_go_on();
-    return returns && may_go_on && is_continued(begin) && impl_->wait_for_control_program(deadline);
+    return waiting.for_program && returns && (had_yielded || !was_ready) && is_continued(begin) &&
+           impl_->wait_for_control_program(deadline);
   };
+  // Otherwise, the next attempt would preempt a holder that has come after the caller.
+  const auto retry = [&] { return wait() && (!waiting.may_go_on || waiting.may_go_on()); };
   return impl_->arbiter.acquire_preempting(claim, admit, retry, deadline, waiting.stop);
 }
 

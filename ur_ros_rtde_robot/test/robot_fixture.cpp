@@ -32,6 +32,16 @@ void RobotFixture::make_both(const RobotOptions & options)
   ASSERT_TRUE(becomes_ready());
 }
 
+void RobotFixture::make_both_slow()
+{
+  constexpr double slowness = 10.0;
+  auto options = Controller::options();
+  options.real_time_factor /= slowness;
+  controller.start(options);
+  make_robot();
+  ASSERT_TRUE(becomes_ready());
+}
+
 testing::AssertionResult RobotFixture::comes_to(RobotState state, ErrorCode cause,
                                                 std::chrono::milliseconds timeout)
 {
@@ -115,6 +125,21 @@ std::vector<Sample> RobotFixture::recorded()
 {
   const std::lock_guard lock(mutex);
   return samples;
+}
+
+double RobotFixture::recorded_rest()
+{
+  const auto is_at_rest = [](const Sample & sample) {
+    return std::ranges::all_of(sample.target_qd, [](double velocity) { return std::abs(velocity) < 1e-6; });
+  };
+  double time = 0.0;
+  EXPECT_TRUE(eventually([&] {
+    const auto all = recorded();
+    const auto found = std::ranges::find_if(all, is_at_rest);
+    time = found != all.end() ? found->controller_time : 0.0;
+    return found != all.end();
+  }));
+  return time;
 }
 
 double RobotFixture::highest_deceleration(std::size_t index)

@@ -323,7 +323,7 @@ TEST_F(ContactDetectionTest, IsAnActivityUntilItIsStopped)
 /// Otherwise, a contact would stop the motion of the next goal.
 TEST_F(ContactDetectionTest, EndsWithAStopOfAnArmAtRest)
 {
-  make_both();
+  make_both_slow();
   const int before = threads();
   ASSERT_TRUE(control()->startContactDetection(down));
   ASSERT_TRUE(eventually([&] { return threads() == before + 1; })) << threads();

@@ -460,6 +460,98 @@ TEST_F(LeaseTest, IsNotGrantedToAClaimThatWaitedWhenTheSafeguardStopIsOver)
   controller.control({{"command", "safeguard"}, {"open", false}});
 }
 
+/// Ends the control program by a stop of the driver, and keeps it from starting again.
+struct EndedProgramTest : LeaseTest {
+  void SetUp() override
+  {
+    LeaseTest::SetUp();
+    before = robot->generation();
+    lease = acquire();
+    move(lease);
+    held = robot->hold_program();
+    const auto call = robot->control_for_queries().hold();  // so that a stop command does not reach it
+    const auto report = robot->stop_motion();
+    ASSERT_TRUE(report) << report.error().message;
+    ASSERT_EQ(report->means, StopMeans::program_stopped);
+    ASSERT_TRUE(robot->is_continued(before));
+  }
+
+  Generation before;
+  Lease lease;
+  std::shared_ptr<void> held;
+};
+
+TEST_F(EndedProgramTest, IsNotContinuedAfterASafeguardStopThatIsOver)
+{
+  controller.control({{"command", "safeguard"}});
+  ASSERT_TRUE(eventually([&] { return robot->latest()->safety().safeguard_stopped; }));
+  controller.control({{"command", "safeguard"}, {"open", false}});
+  ASSERT_TRUE(eventually([&] { return !robot->latest()->safety().safeguard_stopped; }));
+  const Status continued = robot->is_continued(before);
+  ASSERT_FALSE(continued) << "a claim that waits for the program would move the arm";
+  EXPECT_EQ(continued.error().code, ErrorCode::safeguard_stop) << continued.error().message;
+}
+
+TEST_F(EndedProgramTest, IsNotAwaitedByAClaimThatDoesNotNeedIt)
+{
+  const auto claimed = std::async(std::launch::async, [&] {
+    return robot->acquire_preempting(claim(), {.timeout = 60s, .since = before, .for_program = false});
+  });
+  EXPECT_EQ(claimed.wait_for(20s), std::future_status::ready);
+}
+
+/// What is in the way may be in the way for long, and the arm must not move when it is over.
+TEST_F(EndedProgramTest, IsNotAwaitedByAClaimThatHandGuidingKeepsFromTheArm)
+{
+  held.reset();
+  ASSERT_TRUE(becomes_ready_again());
+  lease.release();
+  Claim switching = claim();
+  switching.switches_hand_guiding = true;
+  auto guiding = robot->acquire(switching);
+  ASSERT_TRUE(guiding) << guiding.error().message;
+  ASSERT_TRUE(robot->control(*guiding)->freedriveMode());
+  guiding->release();
+  const auto claimed = std::async(std::launch::async, [&] {
+    return robot->acquire_preempting(claim(), {.timeout = 60s, .since = before});
+  });
+  EXPECT_EQ(claimed.wait_for(20s), std::future_status::ready);
+  robot->stop_motion();
+}
+
+TEST_F(EndedProgramTest, IsNotTheReasonForWhichAHolderThatWasStoppedCannotMoveTheArm)
+{
+  try {
+    robot->control(lease)->stopJ(1.0);
+    FAIL() << "it was stopped";
+  } catch (const RobotError & error) {
+    EXPECT_EQ(error.error().message, stopped_by_the_driver().message);
+  }
+}
+
+TEST_F(LeaseTest, IsNotGrantedToAClaimThatAStopHasOvertaken)
+{
+  Claim holder = claim();
+  std::atomic<bool> asked{false};
+  holder.preempt = [&](const Error &) { asked = true; };
+  std::optional<Lease> held = std::move(*robot->acquire(holder));
+  move(*held);
+  Expected<Lease> newer;
+  std::future<Expected<Lease>> next = std::async(std::launch::async, [&] {
+    return robot->acquire_preempting(claim(), {.timeout = 60s, .may_go_on = [&] {
+                                                 newer = robot->acquire(claim());
+                                                 return false;
+                                               }});
+  });
+  ASSERT_TRUE(eventually([&] { return asked.load(); }));
+  const auto stopping = robot->begin_stop({}, stopped_by_the_driver());
+  held.reset();
+  ASSERT_TRUE(stopping.get());
+  EXPECT_FALSE(next.get());
+  ASSERT_TRUE(newer) << newer.error().message;
+  EXPECT_TRUE(robot->may_continue(*newer)) << "it was preempted by a claim from before the stop";
+}
+
 /// The holder that a stop tells to end gives the arm back at once, while it still moves.
 TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm)
 {

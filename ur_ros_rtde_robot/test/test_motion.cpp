@@ -114,6 +114,30 @@ TEST(MotionTrackerTest, CountsAProgramThatIsFoundPausedAsEnded)
   EXPECT_EQ(programs_after(RuntimeState::playing), begin + 2);
 }
 
+TEST(MotionTrackerTest, CountsASafetyStopWithoutAProgramAsEnd)
+{
+  MotionTracker tracker;
+  Sample sample{};
+  sample.robot_mode = RobotMode::running;
+  constexpr std::uint32_t normal = 1;
+  constexpr std::uint32_t safeguard_stop = 1U << 4U;
+  const auto programs_after = [&](RuntimeState state, std::uint32_t safety) {
+    sample.runtime_state = state;
+    sample.safety_status_bits = safety;
+    ++sample.sequence;
+    tracker.add(sample);
+    return tracker.view().program;
+  };
+  const auto begin = programs_after(RuntimeState::stopped, normal);
+  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 1);
+  EXPECT_EQ(tracker.end_cause().code, ErrorCode::safeguard_stop);
+  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 1);
+  EXPECT_EQ(programs_after(RuntimeState::playing, normal), begin + 1);
+  EXPECT_EQ(programs_after(RuntimeState::playing, safeguard_stop), begin + 1)
+      << "the robot has not ended it yet";
+  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 2);
+}
+
 TEST_F(ArrivalTest, IsProvenByThePackageInWhichTheOperationEnds)
 {
   EXPECT_TRUE(end_move());

@@ -314,6 +314,18 @@ TEST_F(RobotMotionTest, NamesTheProgramThatHasReplacedItsOwnAtEveryMoment)
   EXPECT_EQ(possible.error().code, ErrorCode::program_stopped) << possible.error().message;
 }
 
+TEST_F(RobotMotionTest, NamesTheProgramThatHasReplacedItsOwnInLocalControl)
+{
+  make_both();
+  controller.run_other_program();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  controller.control({{"command", "remote_control"}, {"on", false}});
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  const Status possible = robot->motion_possible();
+  ASSERT_FALSE(possible);
+  EXPECT_EQ(possible.error().code, ErrorCode::program_stopped) << possible.error().message;
+}
+
 TEST_F(RobotMotionTest, NamesTheLostConnectionAfterWhichItsProgramHasEnded)
 {
   make_both();

@@ -7,6 +7,26 @@ namespace ur_ros_rtde::test {
 namespace {
 
 struct StopTest : RobotFixture {
+  /// Stops the arm by the stop command, and returns the time until its target is at rest, s of the
+  /// controller.
+  double stop_and_measure(const StopOptions & options)
+  {
+    recording = true;
+    const double begin = robot->latest()->controller_time;
+    const auto report = robot->stop_motion(options);
+    const double end = robot->latest()->controller_time;
+    const double duration = recorded_rest() - begin;
+    recording = false;
+    EXPECT_TRUE(report) << report.error().message;
+    if (report) {
+      EXPECT_EQ(report->means, StopMeans::stop_command);
+      // The stop begins after `begin`, and a late host notices the standstill later.
+      EXPECT_GT(report->time_to_standstill, 0.6 * duration);
+      EXPECT_LE(report->time_to_standstill, end - begin + 0.01);
+    }
+    return duration;
+  }
+
   /// Starts a joint motion that occupies the control interface, and waits until it is well under way.
   std::jthread move_in_a_blocking_call(const std::vector<double> & q)
   {
@@ -47,29 +67,21 @@ TEST_F(StopTest, DoesNothingWhenArmIsAtRest)
 
 TEST_F(StopTest, DeceleratesAJointMotionAsRequested)
 {
-  make_both();
+  make_both_slow();
   move_joints();
-  recording = true;
-  const auto report = robot->stop_motion(decelerating(2.0, 1.0));
-  recording = false;
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->means, StopMeans::stop_command);
+  const double duration = stop_and_measure(decelerating(2.0, 1.0));
   EXPECT_TRUE(at_rest());
   EXPECT_NEAR(highest_deceleration(0), 2.0, 0.3);
-  // 0.8 rad/s at 2 rad/s^2 take 0.4 s, plus the cycles for the command and the detection of standstill
-  EXPECT_NEAR(report->time_to_standstill, 0.4, 0.12);
+  EXPECT_NEAR(duration, 0.4, 0.12) << "0.8 rad/s at 2 rad/s^2, and the cycles for the command";
   EXPECT_TRUE(robot->ready_to_move()) << "the program goes on";
 }
 
 TEST_F(StopTest, DeceleratesALinearMotionAlongItsLine)
 {
-  make_both();
+  make_both_slow();
   const auto start = robot->latest()->actual_tcp_pose;
   move_linear();
-  const auto report = robot->stop_motion(decelerating(1.0, 0.5));
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->means, StopMeans::stop_command);
-  EXPECT_NEAR(report->time_to_standstill, 0.2, 0.12);
+  EXPECT_NEAR(stop_and_measure(decelerating(1.0, 0.5)), 0.2, 0.12);
   const auto end = robot->latest()->actual_tcp_pose;
   EXPECT_NEAR(end[0], start[0], 1e-3);
   EXPECT_NEAR(end[1], start[1], 1e-3);
@@ -77,7 +89,7 @@ TEST_F(StopTest, DeceleratesALinearMotionAlongItsLine)
 
 TEST_F(StopTest, EndsSpeedJ)
 {
-  make_both();
+  make_both_slow();
   ASSERT_TRUE(control()->speedJ({0.4, 0.0, 0.0, 0.0, 0.0, 0.0}, 2.0, 0.0));
   ASSERT_TRUE(eventually([&] { return robot->latest()->actual_qd[0] > 0.35; }));
   recording = true;
@@ -90,7 +102,7 @@ TEST_F(StopTest, EndsSpeedJ)
 
 TEST_F(StopTest, EndsSpeedL)
 {
-  make_both();
+  make_both_slow();
   ASSERT_TRUE(control()->speedL({0.0, 0.0, 0.05, 0.0, 0.0, 0.0}, 0.5, 0.0));
   ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_speed[2] > 0.04; }));
   const auto report = robot->stop_motion();
@@ -101,7 +113,7 @@ TEST_F(StopTest, EndsSpeedL)
 
 TEST_F(StopTest, EndsServoJ)
 {
-  make_both();
+  make_both_slow();
   auto q = robot->receive()->getActualQ();
   Sample sample = *robot->latest();
   for (int i = 0; i < 200; ++i) {
@@ -119,7 +131,7 @@ TEST_F(StopTest, EndsServoJ)
 
 TEST_F(StopTest, LeavesTheRobotReadyForTheNextMotion)
 {
-  make_both();
+  make_both_slow();
   for (int i = 0; i < 3; ++i) {
     move_linear();
     ASSERT_TRUE(robot->stop_motion(decelerating(4.0, 2.0)));
@@ -131,7 +143,7 @@ TEST_F(StopTest, LeavesTheRobotReadyForTheNextMotion)
 
 TEST_F(StopTest, StopsAMotionThatWasJustCommanded)
 {
-  make_both();
+  make_both_slow();
   auto q = robot->receive()->getActualQ();
   q[0] += 3.0;
   ASSERT_TRUE(control()->moveJ(q, 0.5, 1.0, true));
@@ -225,28 +237,126 @@ TEST_F(StopTest, EndsAForeignProgramThatStandsIfAsked)
   EXPECT_TRUE(becomes_ready());
 }
 
-TEST_F(StopTest, EndsAForeignProgramThatLateSamplesDoNotShow)
+/// Without a control program, with RTDE connections that can stay silent for `silence_limit`.
+struct LateSamplesTest : StopTest {
+  using Stopping = std::shared_future<Expected<StopReport>>;
+
+  void start(std::chrono::milliseconds silence_limit = 5000ms)
+  {
+    auto options = robot_options();
+    options.silence_limit = silence_limit;
+    options.watchdog_frequency = 0.0;
+    options.restart_program = false;
+    make_both(options);
+    controller.control({{"command", "stop_program"}});
+    ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  }
+  void stall(bool on)
+  {
+    controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", on}});
+  }
+  void wait_until_late()
+  {
+    ASSERT_TRUE(
+        eventually([&] { return std::chrono::steady_clock::now() - robot->latest()->received > 300ms; }));
+    ASSERT_FALSE(robot->latest()->is_program_running());
+  }
+  Stopping begin_stop()
+  {
+    StopOptions options;
+    options.ends_foreign_program = true;
+    return robot->begin_stop(options, stopped_by_the_driver());
+  }
+  std::string program() { return controller.state().at("program").at("state"); }
+};
+
+TEST_F(LateSamplesTest, DoNotKeepAStopFromEndingAForeignProgram)
 {
-  auto options = robot_options();
-  options.silence_limit = 5000ms;
-  options.watchdog_frequency = 0.0;
-  options.restart_program = false;
-  make_both(options);
-  controller.control({{"command", "stop_program"}});
-  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
-  controller.control({{"command", "stall_links"}, {"which", "rtde"}});
+  start();
+  stall(true);
   controller.run_other_program();
-  const auto plays = [&] { return controller.state().at("program").at("state") == "PLAYING"; };
-  ASSERT_TRUE(eventually(plays));
-  ASSERT_TRUE(
-      eventually([&] { return std::chrono::steady_clock::now() - robot->latest()->received > 300ms; }));
-  ASSERT_FALSE(robot->latest()->is_program_running());
-  StopOptions stop;
-  stop.ends_foreign_program = true;
-  const auto stopping = robot->begin_stop(stop, stopped_by_the_driver());
-  EXPECT_TRUE(eventually([&] { return !plays(); }));
-  controller.control({{"command", "stall_links"}, {"which", "rtde"}, {"stalled", false}});
+  ASSERT_TRUE(eventually([&] { return program() == "PLAYING"; }));
+  wait_until_late();
+  const auto stopping = begin_stop();
+  EXPECT_TRUE(eventually([&] { return program() == "STOPPED"; }));
+  stall(false);
   EXPECT_TRUE(stopping.get());
+}
+
+TEST_F(LateSamplesTest, AreNoProofOfAForeignProgram)
+{
+  start();
+  controller.control({{"command", "remote_control"}, {"on", false}});  // the robot rejects `stop`
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::not_ready));
+  stall(true);
+  wait_until_late();
+  const auto stopping = begin_stop();
+  EXPECT_EQ(stopping.wait_for(300ms), std::future_status::timeout) << "the samples do not show the present";
+  stall(false);
+  const auto report = stopping.get();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::nothing_moved);
+}
+
+TEST_F(LateSamplesTest, DoNotEndAPausedProgram)
+{
+  start();
+  controller.run_other_program();
+  ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); }));
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::paused; }));
+  stall(true);
+  wait_until_late();
+  const auto stopping = begin_stop();
+  EXPECT_EQ(stopping.wait_for(300ms), std::future_status::timeout) << "the samples do not show the present";
+  stall(false);
+  EXPECT_TRUE(stopping.get());
+  EXPECT_EQ(program(), "PAUSED");
+}
+
+TEST_F(LateSamplesTest, OfAConnectionThatIsLostLetAStopBeRepeatedOverTheNextOne)
+{
+  start(1500ms);
+  const auto link = robot->latest()->link;
+  stall(true);
+  controller.run_other_program();
+  ASSERT_TRUE(eventually([&] { return program() == "PLAYING"; }));
+  wait_until_late();
+  const auto report = begin_stop().get();
+  EXPECT_TRUE(report) << report.error().message;
+  EXPECT_NE(robot->latest()->link, link);
+  EXPECT_EQ(program(), "STOPPED");
+}
+
+/// The receiving thread is late, and reads what has queued up when the program has been stopped.
+TEST_F(LateSamplesTest, AreNoProofOfAStandstill)
+{
+  std::atomic<bool> is_to_wait{false};
+  std::atomic<bool> waits{false};
+  on_sample = [&](const Sample &) {
+    while (is_to_wait) {
+      waits = true;
+      is_to_wait.wait(true);
+    }
+  };
+  start();
+  is_to_wait = true;
+  EXPECT_TRUE(eventually([&] { return waits.load(); }));
+  controller.control(
+      {{"command", "run_script"}, {"script", "def turn():\n  speedj([1.5, 0, 0, 0, 0, 0], 20, 10)\nend\n"}});
+  const auto speed = [&] {
+    return std::abs(controller.state().at("actual").at("velocity").at(0).get<double>());
+  };
+  EXPECT_TRUE(eventually([&] { return speed() > 1.4; }));
+  wait_until_late();
+  const auto stopping = begin_stop();
+  EXPECT_TRUE(eventually([&] { return program() == "STOPPED"; }));
+  is_to_wait = false;
+  is_to_wait.notify_all();
+  const auto report = stopping.get();
+  const double then = speed();
+  EXPECT_TRUE(report) << report.error().message;
+  EXPECT_LT(then, 0.02);
 }
 
 TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)
@@ -308,7 +418,7 @@ TEST_F(StopTest, SucceedsByTheWatchdogOnlyAtTheEndOfTheProgram)
 
 TEST_F(StopTest, MayBeRequestedBySeveralThreads)
 {
-  make_both();
+  make_both_slow();
   move_joints();
   std::atomic<int> stopped{0};
   {

@@ -10,15 +10,26 @@
 namespace ur_ros_rtde::test {
 namespace {
 
+constexpr double slowness = 10.0;
+
+/// Of a robot that is slow, so that delays of a busy host are short in the robot's time, which the watchdog
+/// measures.
+ur_simulator::SimulatorOptions slow_controller()
+{
+  auto options = Controller::options();
+  options.real_time_factor /= slowness;
+  return options;
+}
+
 /// A process with a driver that moves the arm until it is killed. Construct it before the test starts a
 /// thread.
 class DriverProcess {
  public:
-  explicit DriverProcess(double watchdog_frequency = RobotOptions().watchdog_frequency)
+  DriverProcess()
   {
     process_ = ::fork();
     if (process_ == 0) {
-      move_forever(watchdog_frequency);
+      move_forever();
     }
   }
   ~DriverProcess()
@@ -29,10 +40,10 @@ class DriverProcess {
   void send(int signal) const { ::kill(process_, signal); }
 
  private:
-  [[noreturn]] static void move_forever(double watchdog_frequency)
+  [[noreturn]] static void move_forever()
   {
     auto options = robot_options();
-    options.watchdog_frequency = watchdog_frequency;
+    options.watchdog_frequency = RobotOptions().watchdog_frequency;
     Robot robot(options);
     robot.start();
     if (robot.wait_until_ready(30s)) {
@@ -73,7 +84,7 @@ bool program_stops(Controller & controller)
 TEST(WatchdogTest, StopsTheArmWhenTheDriverIsKilled)
 {
   const DriverProcess driver;
-  Controller controller(Controller::options());
+  Controller controller(slow_controller());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   driver.send(SIGKILL);
   const double time = time_to_rest(controller);
@@ -85,7 +96,7 @@ TEST(WatchdogTest, StopsTheArmWhenTheDriverIsKilled)
 TEST(WatchdogTest, StopsTheArmWhenTheDriverHangs)
 {
   const DriverProcess driver;
-  Controller controller(Controller::options());
+  Controller controller(slow_controller());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   driver.send(SIGSTOP);  // all its connections stay open
   EXPECT_LT(time_to_rest(controller), 0.4);
@@ -94,11 +105,12 @@ TEST(WatchdogTest, StopsTheArmWhenTheDriverHangs)
 
 TEST(WatchdogTest, LetsALiveDriverContinue)
 {
-  const DriverProcess driver(2.0);  // a busy host may not let the driver run for the 100 ms of the default
-  Controller controller(Controller::options());
+  const DriverProcess driver;
+  Controller controller(slow_controller());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   const double begin = controller.state().at("timestamp").get<double>();
-  EXPECT_TRUE(eventually([&] { return controller.state().at("timestamp").get<double>() > begin + 2.0; }));
+  const double end = begin + 5.0 / RobotOptions().watchdog_frequency;
+  EXPECT_TRUE(eventually([&] { return controller.state().at("timestamp").get<double>() > end; }));
   EXPECT_GT(base_speed(controller), 0.45);
 }
 

@@ -37,6 +37,9 @@ def test_a_safety_stop_has_a_red_banner_with_cause_and_remedy(mode):
 def test_a_missing_driver_a_silent_one_and_an_unknown_model_are_explained():
     color, text = banner(RobotState())
     assert color == AMBER and "/left/joint_states" in text and "ROS_DOMAIN_ID" in text
+    color, text = banner(RobotState(other_drivers=("/", "/right")))
+    assert color == AMBER and text == ("left: no messages on /left/joint_states, but there is a driver in / and /right. Start the viewer "
+                                       "with its namespace: --namespace /")
     silent = moving()
     silent.age = 4.0
     assert "for 4 s" in banner(silent)[1]

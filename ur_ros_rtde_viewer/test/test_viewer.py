@@ -191,6 +191,17 @@ def test_a_second_robot_is_independent_and_has_a_prefix(viewer, client):
     assert right.scene.arm.positions == pytest.approx(shown_before)
 
 
+def test_a_viewer_with_the_wrong_namespace_names_the_driver(server, driver):
+    nodes = Nodes()
+    viewer = Viewer(server, nodes, parse(["--namespace", "nope"]))
+    try:
+        banner = panel(viewer.robots[0], Banner)
+        update_until(viewer, lambda: banner.shown and "there is a driver in /. " in banner.shown[0][1], "the banner")
+    finally:
+        viewer.close()
+        nodes.close()
+
+
 def test_posted_functions_run_in_the_loop_and_a_failing_one_is_logged(viewer, caplog):
     called = []
     viewer.post(lambda: 1 / 0)

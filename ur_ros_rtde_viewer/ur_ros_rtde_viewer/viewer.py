@@ -12,6 +12,7 @@ from .panels import add_panels, add_plan_panel
 from .robot_view import RobotView
 from .ros.diagnostics import Diagnostics
 from .ros.nodes import Nodes
+from .ros.other_drivers import OtherDrivers
 
 logger = logging.getLogger(__name__)
 CLOSE_TIMEOUT = 2.0  # s
@@ -32,6 +33,7 @@ class Viewer:
             diagnostics = Diagnostics(nodes)
             self.robots: List[RobotView] = [RobotView(server, nodes, diagnostics, robot, self.layout.tabs(robot), options.simulator)
                                             for robot in found]
+            self._other_drivers = OtherDrivers(nodes, [robot.topics for robot in self.robots])
             for robot in self.robots:
                 add_panels(self, robot)
             if options.plan:
@@ -74,6 +76,7 @@ class Viewer:
 
     def update(self) -> None:
         with self.server.atomic():
+            self._other_drivers.update()
             for robot in self.robots:
                 robot.update()
             if self.control is not None:

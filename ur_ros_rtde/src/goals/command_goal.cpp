@@ -243,18 +243,20 @@ Status CommandGoal::acquire()
     return {};
   }
   const bool preempts_all = command_->traits.preempts_all;  // a stop, which is executed in every state
-  auto lease = robot().acquire_preempting(
-      claim(),
-      {.timeout = preemption_timeout, .since = received_, .stop = stop_request().token(), .may_go_on = [&] {
-         return preempts_all || is_not_overtaken();
-       }});
-  if (!preempts_all) {
-    if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
-      return not_overtaken;  // also names the cause if there is no lease
-    }
-    if (!lease) {
-      return tl::unexpected(lease.error());
-    }
+  const auto may_go_on = [&] { return preempts_all ? Status() : is_not_overtaken(); };
+  if (Status now = may_go_on(); !now) {
+    return now;  // before it preempts anything
+  }
+  auto lease = robot().acquire_preempting(claim(), {.timeout = preemption_timeout,
+                                                    .since = received_,
+                                                    .stop = stop_request().token(),
+                                                    .may_go_on = [&] { return may_go_on().has_value(); },
+                                                    .for_program = !preempts_all});
+  if (Status now = may_go_on(); !now) {
+    return now;  // also names the cause if there is no lease
+  }
+  if (!lease && !preempts_all) {
+    return tl::unexpected(lease.error());
   }
   if (lease) {
     hold(std::move(*lease));
@@ -338,10 +340,18 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
   if (outcome || !may_be_consequence(outcome.code()) || resource == Resource::script) {
     return outcome;  // a script ends the control program by itself, and its report is precise
   }
-  const bool uses_control_program = resource != Resource::io && !command_->traits.allowed_in_any_state;
-  const Status valid = robot().is_valid(begin);
-  const bool explains = !valid && (uses_control_program || valid.error().code == ErrorCode::link_lost);
-  return explains ? valid : outcome;
+  if (resource == Resource::io || command_->traits.allowed_in_any_state) {
+    const auto is_lost = [](const Status & status) {
+      return !status && status.error().code == ErrorCode::link_lost;
+    };
+    const Status current = robot().is_current(begin);
+    const Status valid = is_lost(current) ? current : robot().is_valid(begin);
+    return is_lost(valid) ? valid : outcome;
+  }
+  const std::lock_guard lock(lease_mutex_);
+  // What the goal has preempted may have ended the program before the lease.
+  const Status valid = lease_ ? robot().is_valid(lease_) : robot().is_valid(begin);
+  return valid ? outcome : valid;
 }
 
 Outcome CommandGoal::settle(const Outcome & outcome)

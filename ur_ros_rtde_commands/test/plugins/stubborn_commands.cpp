@@ -1,5 +1,6 @@
 // Commands of the stop property test that do not end soon after they have to.
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 #include <ur_ros_rtde_msgs/action/dashboard_query.hpp>
 #include <ur_ros_rtde_msgs/action/speed_j.hpp>
@@ -122,6 +123,10 @@ class BlocksCallbacks : public Command<SpeedJAction> {
   rcl_cxx::Timer::SharedPtr timer_;
 };
 
+class Fails : public Command<SpeedJAction> {
+  Outcome run(const Goal &, Run &) override { throw std::runtime_error("the gripper is broken"); }
+};
+
 /// A dashboard command whose check takes 2 s, which it must not.
 class DashboardSlowToCheck : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardQuery> {
   void check(const Goal &, Check &) const override { std::this_thread::sleep_for(std::chrono::seconds(2)); }
@@ -143,6 +148,7 @@ UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
 UR_ROS_RTDE_EXPORT(TurnsAndHangs, "turns_and_hangs")
 UR_ROS_RTDE_EXPORT(BlocksCallbacks, "blocks_callbacks")
+UR_ROS_RTDE_EXPORT(Fails, "fails")
 UR_ROS_RTDE_EXPORT(DashboardSlowToCheck, "dashboard/slow_to_check")
 UR_ROS_RTDE_EXPORT(Hangs, "dashboard/hangs")
 

@@ -2,9 +2,9 @@ import functools
 
 import pytest
 from plugin_prefix import create_plugin_prefix
-from robot_fixtures import addresses, client, destroy_subscriptions_after_test, driver, processes, robot, simulator
+from robot_fixtures import addresses, client, destroy_subscriptions_after_test, driver, processes, robot, simulator, start_slow_robot
 
-__all__ = ["addresses", "client", "destroy_subscriptions_after_test", "driver", "processes", "robot", "simulator"]
+__all__ = ["addresses", "client", "destroy_subscriptions_after_test", "driver", "processes", "robot", "simulator", "start_slow_robot"]
 
 
 @pytest.fixture

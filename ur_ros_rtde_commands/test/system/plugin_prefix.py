@@ -12,7 +12,7 @@ _CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_sp
             "calls_move_j_relative": "CallsMoveJRelative", "calls_itself": "CallsItself",
             "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn",
             "turns_as_mode": "TurnsAsMode", "turns_as_output": "TurnsAsOutput", "turns_and_hangs": "TurnsAndHangs",
-            "starts_speed_l": "StartsSpeedL", "starts_force_mode": "StartsForceMode",
+            "starts_speed_l": "StartsSpeedL", "starts_force_mode": "StartsForceMode", "fails": "Fails",
             "slow_to_check": "SlowToCheck", "very_slow_to_check": "VerySlowToCheck", "blocks_callbacks": "BlocksCallbacks",
             "waits_for_output": "WaitsForOutput", "uses_another_tool": "UsesAnotherTool",
             "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs",

@@ -4,11 +4,15 @@ import os
 import time
 
 import pytest
-from support import HOME, RECOVERY_TIME_FACTOR, Client, Simulator, start_node, wait_for
+from support import HOME, REAL_TIME_FACTOR, RECOVERY_TIME_FACTOR, Client, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.msg import ErrorCode
 
 RETRY_INTERVAL = 0.05  # s
+SLOWNESS = 10.0  # s of the host for each s of a slow robot
+# Error codes of rejections while the control program starts.
+STARTING = (ErrorCode.NOT_READY, ErrorCode.PROGRAM_STOPPED, ErrorCode.LINK_LOST)
 
 
 def _address(number):
@@ -83,6 +87,42 @@ def make_ready(client, limit=30.0, joint_positions=HOME):
         wait_for(is_at_target, limit, "the driver to accept a motion")
     except AssertionError as error:
         raise AssertionError(f"{error}; last message: {reasons[-1:]}") from None
+
+
+def send_after_stop(client, action, name, **fields):
+    """Sends a goal after a stop. If the host was late, the stop has ended the control program, which starts again: sends it until it is
+    accepted. Fails if it is rejected for another reason."""
+
+    def accepted():
+        goal = client.send(action, name, **fields)
+        if goal.accepted:
+            return goal
+        rejection = client.rejection(goal)
+        assert rejection.error_code in STARTING, rejection.message
+        return None
+
+    return wait_for(accepted, 20.0, "the control program")
+
+
+@pytest.fixture
+def start_slow_robot(addresses, processes):
+    """Returns a function that starts a robot of its own and returns client, driver and simulator.
+
+    The robot is slow, so that delays of a busy host are short in its time: a stop ends the control program if that does not take its
+    command within some control cycles."""
+    clients = []
+
+    def start(*plugins):
+        simulator = processes(Simulator(addresses[1], real_time_factor=REAL_TIME_FACTOR / SLOWNESS))
+        driver = processes(start_node("driver", simulator.address, "ur_type:=ur10e", f"plugins:=[{','.join(('move_j', 'stop', *plugins))}]",
+                                      namespace="slow"))
+        clients.append(Client("slow"))
+        make_ready(clients[-1], 60.0)
+        return clients[-1], driver, simulator
+
+    yield start
+    for client in clients:
+        client.close()
 
 
 @pytest.fixture

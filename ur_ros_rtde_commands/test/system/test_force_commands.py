@@ -120,7 +120,8 @@ def test_a_velocity_ends_while_force_mode_goes_on_moving_the_arm(robot, simulato
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
-def test_canceling_a_motion_ends_force_mode(robot, driver, simulator):
+def test_canceling_a_motion_ends_force_mode(start_slow_robot):
+    robot, driver, simulator = start_slow_robot("force_mode_start")
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(1.0), speed=0.3)
     wait_until_moving(robot)

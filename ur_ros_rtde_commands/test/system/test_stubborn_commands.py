@@ -7,25 +7,26 @@ from plugin_prefix import environment_of_test_commands
 from robot_fixtures import make_ready
 from support import HOME, TIMEOUT_FACTOR, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, ForceMode, MoveJ, SpeedJ, Stop, Trigger
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, ForceMode, MoveJ, SendScript, SpeedJ, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 STOPS = ("stop", "stand_down", "trigger_protective_stop", "dashboard/stop", "dashboard/pause", "dashboard/power_off",
          "dashboard/shutdown")
 PLUGINS = ("plugins:=[move_j,turns_as_mode,turns_and_hangs,slow_to_check,very_slow_to_check,turns_as_output,force_mode_start,"
-           f"starts_speed_l,starts_force_mode,blocks_callbacks,dashboard/hangs,dashboard/slow_to_check,{','.join(STOPS)}]")
+           f"starts_speed_l,starts_force_mode,blocks_callbacks,fails,send_script,dashboard/hangs,dashboard/slow_to_check,{','.join(STOPS)}]")
 STOPPING_TIME = 1.5  # s, with a reserve: 0.5 rad/s at 2 rad/s^2 take 0.25 s
 DOCUMENTED_STOPPING_TIME = 0.6  # s, of a cancel and of a stop: docs/use/safety.md
 ACTING_TIME = 0.5  # s, from the request of a stop to its effect
 
 
 @pytest.fixture
-def cell(addresses, tmp_path, processes):
-    """A simulator, a driver with the commands of test/plugins, and a client."""
+def cell(addresses, tmp_path, processes, request):
+    """A simulator, a driver with the commands of test/plugins, and a client. The parameter of the fixture are those of the driver."""
     environment = environment_of_test_commands(tmp_path / "prefix")
     assert environment, "the test commands have not been built"
     simulator = Simulator(addresses[1])
-    driver = processes(start_node("driver", addresses[1], "ur_type:=ur10e", PLUGINS, namespace="stubborn", env=environment))
+    parameters = ("ur_type:=ur10e", PLUGINS, *getattr(request, "param", ()))
+    driver = processes(start_node("driver", addresses[1], *parameters, namespace="stubborn", env=environment))
     client = Client("stubborn")
     make_ready(client)
     yield simulator, driver, client
@@ -90,6 +91,15 @@ def test_what_a_command_of_a_mode_leaves_turning_is_stopped(cell):
     wait_for(lambda: simulator.state()["timestamp"] > begin + STOPPING_TIME, 15.0, "the time in which it would turn")
     assert simulator.is_at_rest() and abs(simulator.state()["actual"]["position"][0] - HOME[0]) < 0.5 * STOPPING_TIME / 2.0
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+
+
+@pytest.mark.parametrize("cell", [("on_busy:=preempt",)], indirect=True)
+def test_a_goal_that_has_preempted_a_script_fails_with_its_own_error(cell):
+    simulator, _driver, client = cell
+    client.send(SendScript, "send_script", script="q = get_actual_joint_positions()\nq[0] = q[0] + 1.5\nmovej(q, a=1, v=0.3)")
+    wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
+    _, result = client.send(SpeedJ, "fails", acceleration=1.0).wait_for_result()
+    assert result.error_code == ErrorCode.EXCEPTION and "the gripper is broken" in result.message, result.message
 
 
 def test_a_goal_whose_check_was_overtaken_by_a_stop_is_rejected(cell):

@@ -1,9 +1,12 @@
 """Motions that end on contact, force or torque, and contact detection."""
 
+import functools
+
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_speed
 from geometry_msgs.msg import Twist, Vector3
+from robot_fixtures import send_after_stop
 from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import ContactDetection, MoveJ, MoveUntilContact, MoveUntilForce, SpeedL, ToolContact
@@ -52,18 +55,21 @@ def test_move_until_contact_ignores_contacts_in_other_directions(robot, simulato
     assert result.error_code == ErrorCode.NOT_REACHED, result.message
 
 
+# The arm of move_until_force goes on while the host is late, in 0.75 s by 15 mm.
 @pytest.mark.parametrize("fields, code", [({"distance": 0.05, "timeout": 20.0}, ErrorCode.NOT_REACHED),
-                                          ({"distance": 0.5, "timeout": 1.0}, ErrorCode.TIMEOUT)])
+                                          ({"distance": 0.5, "timeout": 2.0}, ErrorCode.TIMEOUT)])
 @pytest.mark.parametrize("action, name, more", [(MoveUntilContact, "move_until_contact", {}),
                                                 (MoveUntilForce, "move_until_force", {"threshold": 50.0})])
 def test_without_contact_the_motion_stops_after_distance_or_timeout(robot, action, name, more, fields, code):
     start = height_now(robot)
-    status, result = robot.send(action, name, twist=DOWN, **fields, **more).wait_for_result()
+    status, result = robot.send(action, name, twist=SLOWLY_DOWN, **fields, **more).wait_for_result()
     assert status == GoalStatus.STATUS_ABORTED and result.error_code == code, result.message
     assert get_joint_speed(robot) < 0.01
-    expected = min(fields["distance"], 0.05 * fields["timeout"])
+    expected = min(fields["distance"], -SLOWLY_DOWN.linear.z * fields["timeout"])
     assert start - result.final_state.tcp_pose.position.z == pytest.approx(expected, abs=0.015)
-    robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+    # The search of move_until_contact is a script: the control program is restored before its result, however late the host is.
+    send = robot.send if action is MoveUntilContact else functools.partial(send_after_stop, robot)
+    send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
 def test_canceling_move_until_contact_stops_the_arm(robot):

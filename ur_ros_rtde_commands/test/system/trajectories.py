@@ -70,6 +70,10 @@ class TargetRecorder:
         wait_for(lambda: self.update() and goal.is_finished(), limit, "the end")
         self.update()
 
+    def duration(self):
+        """Returns the duration of the record in s of the robot."""
+        return 0.002 * (self._last_cycle - self._first_cycle)
+
     def max_joint_speed(self):
         return max(self.joint_speeds.values())
 
@@ -90,6 +94,11 @@ class TargetRecorder:
         """Returns the lengths of the gaps between setpoints that are longer than this number of cycles."""
         cycles = sorted(cycle for cycle in self._setpoint_cycles if first <= cycle <= last)
         return [later - earlier for earlier, later in zip(cycles, cycles[1:]) if later - earlier > longer_than]
+
+    def has_gap(self, longer_than, first, last):
+        """Returns whether a gap between setpoints that is longer than this number of cycles reaches into a range of cycles."""
+        cycles = sorted(self._setpoint_cycles)
+        return any(later - earlier > longer_than and earlier < last and later > first for earlier, later in zip(cycles, cycles[1:]))
 
     def cycle_at_travel(self, distance):
         """Returns the cycle in which the target of the fastest joint has traveled this distance in rad."""

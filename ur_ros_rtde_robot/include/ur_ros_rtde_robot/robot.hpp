@@ -85,7 +85,8 @@ class Robot {
     std::chrono::milliseconds timeout;
     std::optional<Generation> since = {};       ///< in which the caller was told to claim; default: now
     std::stop_token stop = {};                  ///< ends the wait
-    std::function<bool()> may_go_on = nullptr;  ///< or ends the wait for the control program; default: it may
+    std::function<bool()> may_go_on = nullptr;  ///< asked after each wait; default: it may
+    bool for_program = true;                    ///< also for the control program
   };
   /// The same, after preempting the holders that are in the way. Waits for them, for the stop that they lead
   /// to, and for the control program if such a stop has ended it. A safety stop, or an end of the program

@@ -5,6 +5,11 @@
 #include "ur_ros_rtde_robot/connection/dashboard_session.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+
+constexpr std::chrono::milliseconds answer_timeout{500};
+
+}  // namespace
 
 Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
                                         std::chrono::milliseconds timeout, const std::stop_token & stop)
@@ -12,10 +17,15 @@ Expected<std::string> dashboard_request(const std::string & address, const std::
   return DashboardSession(address).request(line, timeout, stop);
 }
 
+bool may_play(const std::string & address)
+{
+  const auto answer = dashboard_request(address, "programState", answer_timeout, {});
+  return !answer || (!answer->starts_with("STOPPED") && !answer->starts_with("PAUSED"));
+}
+
 Status stop_program(const std::string & address)
 {
-  constexpr std::chrono::milliseconds timeout{500};
-  const auto answer = dashboard_request(address, "stop", timeout, {});
+  const auto answer = dashboard_request(address, "stop", answer_timeout, {});
   if (!answer) {
     return tl::unexpected(answer.error());
   }

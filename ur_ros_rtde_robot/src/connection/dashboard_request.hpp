@@ -15,6 +15,9 @@ namespace ur_ros_rtde {
 Expected<std::string> dashboard_request(const std::string & address, const std::string & line,
                                         std::chrono::milliseconds timeout, const std::stop_token & stop);
 
+/// Returns whether a program plays on the robot; true if the dashboard server does not tell.
+bool may_play(const std::string & address);
+
 /// Stops the program that runs on the robot. Fails with the robot's answer if it does not.
 Status stop_program(const std::string & address);
 

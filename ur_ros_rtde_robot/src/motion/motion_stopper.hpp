@@ -123,7 +123,9 @@ class MotionStopper {
   /// For an arm at rest: a program of this driver that the robot has paused, or whose connection was lost,
   /// may move it again.
   bool may_go_on(const Sample & sample, Activities started) const;
-  /// Or may play, because the samples are late.
+  /// That plays, and that these options end. Waits for samples that show it if the arm seems to be at rest.
+  bool finds_foreign_program(const StopOptions & options) const;
+  /// As late samples do not show yet, but the dashboard server.
   bool foreign_program_plays() const;
   /// Through the dashboard server alone: the program may have no watchdog.
   Expected<StopMeans> end_foreign_program(const StopOptions & options);
@@ -152,6 +154,11 @@ class MotionStopper {
   /// the connection is lost, and if the options of the stop have changed.
   bool wait_for(double timeout, const std::function<bool(const Sample &)> & condition) const;
   bool wait_for_standstill(double timeout, const StopOptions & options) const;
+  /// Until the samples show the robot after this call. False as with wait_for.
+  bool wait_for_present() const;
+  /// s, the age of the newest sample if that is late: it shows neither what has just begun nor a standstill.
+  /// Otherwise 0.
+  double lateness() const;
 
   const RobotOptions options_;
   const StateReceiver & state_;

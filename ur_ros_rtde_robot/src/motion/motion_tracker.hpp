@@ -18,8 +18,9 @@ class MotionTracker {
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
-    /// Incremented when the robot program ends, when it is found paused without having been seen to run, and
-    /// when the connection is re-established, each of which ends all motions.
+    /// Incremented when the robot program ends, when it is found paused without having been seen to run, when
+    /// the robot stops (motion_blocker) without a program, and when the connection is re-established. Each of
+    /// them ends all motions, and what waits for the program to begin one.
     std::uint32_t program = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
@@ -48,19 +49,22 @@ class MotionTracker {
       return;
     }
     const bool found_paused = is_paused(sample) && !view_.program_running && !was_paused_;
-    const bool ended =
-        (view_.program_running && !sample.is_program_running()) || found_paused || sample.link != view_.link;
+    const auto blocker = motion_blocker(sample);
+    const bool found_blocked = blocker && !was_blocked_ && !sample.is_program_running();
+    const bool ended = (view_.program_running && !sample.is_program_running()) || found_paused ||
+                       found_blocked || sample.link != view_.link;
     const bool same_word = sample.async == view_.async;
     standstill_.add(sample);
     arrival_.add(sample, !ended && operation_ends(sample));
     if (ended) {
       end_cause_ = sample.link != view_.link ? Error{ErrorCode::link_lost, connection_replaced}
-                                             : motion_blocker(sample).value_or(Error{});
+                                             : blocker.value_or(Error{});
     }
     const double gap = view_.sequence == 0 ? 0.0 : seconds_between(received_, sample.received);
     const bool keeps_gap = gap <= view_.gap && sample.controller_time - view_.gap_time < gap_memory;
     received_ = sample.received;
     was_paused_ = is_paused(sample);
+    was_blocked_ = blocker.has_value();
     view_ = {.at_rest = standstill_.at_rest() || arrival_.arrived(),
              .async = sample.async,
              .program_running = sample.is_program_running(),
@@ -110,6 +114,7 @@ class MotionTracker {
   ArrivalDetector arrival_;
   View view_;
   bool was_paused_ = false;
+  bool was_blocked_ = false;
   std::chrono::steady_clock::time_point received_{};  ///< of the newest sample
   Error end_cause_;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "connection/dashboard_request.hpp"
+#include "connection/skew.hpp"
 #include "motion/deceleration_check.hpp"
 #include "motion/motion_stopper.hpp"
 
@@ -327,12 +328,30 @@ bool MotionStopper::wait_for(double timeout, const std::function<bool(const Samp
 
 bool MotionStopper::wait_for_standstill(double timeout, const StopOptions & options) const
 {
-  const auto begin = tracker_.view().sequence;
+  const auto begin = tracker_.view();
+  const double late = lateness();  // what has queued up since shows an earlier standstill
   const bool mode_stays = activities_.now().contains_any(options.keep);
-  return wait_for(timeout, [&](const Sample &) {
+  return wait_for(timeout + late, [&](const Sample &) {
     const auto view = tracker_.view();
-    return view.sequence >= begin + sample_delay && (view.at_rest || mode_stays) && !view.operating();
+    return view.sequence >= begin.sequence + sample_delay &&
+           view.controller_time >= begin.controller_time + late && (view.at_rest || mode_stays) &&
+           !view.operating();
   });
+}
+
+bool MotionStopper::wait_for_present() const
+{
+  const double late = lateness();
+  const double present = state_.latest().value_or(Sample{}).controller_time + late;
+  return wait_for(program_stop_timeout + late,
+                  [&](const Sample & sample) { return sample.controller_time >= present; });
+}
+
+double MotionStopper::lateness() const
+{
+  const auto sample = state_.latest();
+  const auto age = sample ? Clock::now() - sample->received : Clock::duration::zero();
+  return age > max_skew ? std::chrono::duration<double>(age).count() : 0.0;
 }
 
 }  // namespace ur_ros_rtde

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "connection/dashboard_request.hpp"
-#include "connection/skew.hpp"
 #include "motion/motion_blocker.hpp"
 #include "motion/motion_stopper.hpp"
 
@@ -46,8 +45,12 @@ Expected<StopReport> MotionStopper::execute_once(const StopOptions & options)
     const auto settled = settle(means, options);
     return settled || state_.link().connected ? report(settled) : stop_without_rtde();
   };
-  if (options.ends_foreign_program && foreign_program_plays()) {
-    return report(end_foreign_program(options));
+  if (finds_foreign_program(options)) {
+    const auto ended = end_foreign_program(options);
+    return ended || state_.link().connected ? report(ended) : stop_without_rtde();
+  }
+  if (!state_.link().connected) {
+    return stop_without_rtde();  // lost since
   }
   if (is_done(options)) {
     return at_rest(StopMeans::nothing_moved);
@@ -130,12 +133,25 @@ Expected<StopMeans> MotionStopper::end_foreign_program(const StopOptions & optio
   return StopMeans::program_stopped;
 }
 
+bool MotionStopper::finds_foreign_program(const StopOptions & options) const
+{
+  if (!options.ends_foreign_program) {
+    return false;
+  }
+  if (foreign_program_plays()) {
+    return true;
+  }
+  // Late samples do not show yet what has replaced the control program.
+  return is_done(options) && lateness() > 0.0 && wait_for_present() && foreign_program_plays();
+}
+
 bool MotionStopper::foreign_program_plays() const
 {
-  const Sample sample = state_.latest().value_or(Sample{});
-  // Late samples do not show yet what has begun.
-  const bool is_late = Clock::now() - sample.received > max_skew;
-  return (is_late || sample.is_program_running()) && program_.has_foreign_program();
+  if (!program_.has_foreign_program()) {
+    return false;
+  }
+  const bool plays = state_.latest().value_or(Sample{}).is_program_running();
+  return plays || (lateness() > 0.0 && may_play(options_.address));
 }
 
 bool MotionStopper::may_go_on(const Sample & sample, Activities started) const

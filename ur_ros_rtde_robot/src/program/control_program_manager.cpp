@@ -124,10 +124,12 @@ bool ControlProgramManager::has_foreign_program() const
 
 std::optional<Error> ControlProgramManager::replacement() const
 {
-  const auto [state, observation] = snapshot();
+  auto [state, observation] = snapshot();
   if (state != ProgramState::foreign) {
     return std::nullopt;
   }
+  observation.remote_control =
+      true;  // in local control, too, it is the other program that has ended the motion
   const RobotStatus status =
       program_status(state, observation, receiver_.latest().value_or(Sample{}).runtime_state, options_);
   return Error{status.cause, status.message};

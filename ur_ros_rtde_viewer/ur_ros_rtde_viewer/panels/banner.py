@@ -21,6 +21,9 @@ def _most_important(state: RobotState, name: str, topic: str, has_model: bool, e
     if state.is_stopped:
         title = state.safety_mode.replace("_", " ")
         return RED, f"{name}: {title}: {state.driver.message if state.driver is not None else ''}"
+    if state.joints is None and state.other_drivers:
+        return AMBER, (f"{name}: no messages on {topic}, but there is a driver in {' and '.join(state.other_drivers)}. Start the viewer "
+                       f"with its namespace: --namespace {state.other_drivers[0]}")
     if state.joints is None:
         return AMBER, (f"{name}: no messages on {topic}. Start the driver (`ros2 launch ur_ros_rtde driver.launch.py` or `./ur demo "
                        "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")

@@ -78,6 +78,7 @@ class RobotState:
     goal: Optional[ActiveGoal] = None
     rejections: Deque[Rejection] = field(default_factory=lambda: deque(maxlen=MAX_REJECTIONS))
     model: str = ""  # that the driver reports
+    other_drivers: Tuple[str, ...] = ()  # namespaces of drivers that the page does not show; before the first joint states only
     address: str = ""  # of the controller, that the driver reports
     age: float = float("inf")  # s, since the last joint state was received
 
