@@ -97,7 +97,10 @@ Locked<ur_rtde::RTDEControlInterface> Robot::control(const Lease & lease)
     return control->permitted_by(permission(lease));
   }
   const bool has_yielded = impl_->manager.control_owner() == ControlOwner::script;
-  const Status valid = lease && !has_yielded ? may_continue(lease) : Status();
+  Status valid = lease && !has_yielded ? is_valid(lease) : Status();
+  if (!valid && valid.error().code == ErrorCode::program_stopped) {
+    valid = may_continue(lease);  // by the stop that has taken the arm out of the hands of the holder
+  }
   throw RobotError(valid ? impl_->unavailable_error() : valid.error());
 }
 

@@ -220,9 +220,13 @@ Generation Robot::Impl::generation() const
 {
   const auto view = tracker.view();
   const auto starts = interfaces.starts();
-  return {view.program,        starts.number,
-          view.link,           stopper.ended_programs() + scripts.ended_programs(),
-          starts.after_script, interfaces.failed_starts()};
+  return {.ends = view.program,
+          .starts = starts.number,
+          .link = view.link,
+          .robot_stops = view.robot_stops,
+          .ended_by_driver = stopper.ended_programs() + scripts.ended_programs(),
+          .restarted_by_driver = starts.after_script,
+          .failed_starts = interfaces.failed_starts()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

@@ -74,6 +74,9 @@ Status Robot::is_current(const Generation & generation) const
   if (now.ends != generation.ends) {
     return tl::unexpected(impl_->program_ended_error());
   }
+  if (now.robot_stops != generation.robot_stops) {
+    return tl::unexpected(impl_->tracker.stop_cause());
+  }
   return failure(ErrorCode::program_stopped,
                  "the control program was replaced or started again; the motion is not resumed");
 }
@@ -81,6 +84,9 @@ Status Robot::is_current(const Generation & generation) const
 Status Robot::is_continued(const Generation & generation) const
 {
   const Generation now = impl_->generation();
+  if (now.link == generation.link && now.robot_stops != generation.robot_stops) {
+    return tl::unexpected(impl_->tracker.stop_cause());  // although the driver has ended the program
+  }
   const std::uint32_t by_driver = now.ended_by_driver - generation.ended_by_driver;
   const std::uint32_t restarts = now.restarted_by_driver - generation.restarted_by_driver;
   const bool continued = now.link == generation.link && now.failed_starts == generation.failed_starts &&

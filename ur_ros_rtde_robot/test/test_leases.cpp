@@ -15,12 +15,13 @@ namespace {
 constexpr double slowness = 10.0;
 
 struct LeaseTest : RobotFixture {
-  void SetUp() override
+  void SetUp() override { start(robot_options()); }
+  void start(const RobotOptions & of_robot)
   {
     auto options = Controller::options();
     options.real_time_factor /= slowness;
     controller.start(options);
-    make_robot();
+    make_robot(of_robot);
     ASSERT_TRUE(becomes_ready());
   }
 
@@ -61,6 +62,15 @@ struct LeaseTest : RobotFixture {
       return robot->latest()->controller_time > end;
     });
     return passed && !moved ? testing::AssertionSuccess() : testing::AssertionFailure() << "it moves";
+  }
+  /// By a stop of the driver during a motion of the holder.
+  void end_program(const Lease & lease)
+  {
+    move(lease);
+    const auto call = robot->control_for_queries().hold();  // so that a stop command does not reach it
+    const auto report = robot->stop_motion({}, stopped_by_the_driver());
+    ASSERT_TRUE(report) << report.error().message;
+    ASSERT_EQ(report->means, StopMeans::program_stopped);
   }
   void stop_and_start_program()
   {
@@ -460,25 +470,22 @@ TEST_F(LeaseTest, IsNotGrantedToAClaimThatWaitedWhenTheSafeguardStopIsOver)
   controller.control({{"command", "safeguard"}, {"open", false}});
 }
 
-/// Ends the control program by a stop of the driver, and keeps it from starting again.
+/// A stop of the driver has ended the control program, which does not start again.
 struct EndedProgramTest : LeaseTest {
   void SetUp() override
   {
-    LeaseTest::SetUp();
+    auto options = robot_options();
+    options.restart_program = false;
+    start(options);
     before = robot->generation();
     lease = acquire();
-    move(lease);
-    held = robot->hold_program();
-    const auto call = robot->control_for_queries().hold();  // so that a stop command does not reach it
-    const auto report = robot->stop_motion();
-    ASSERT_TRUE(report) << report.error().message;
-    ASSERT_EQ(report->means, StopMeans::program_stopped);
+    end_program(lease);
+    ASSERT_FALSE(robot->latest()->is_program_running());
     ASSERT_TRUE(robot->is_continued(before));
   }
 
   Generation before;
   Lease lease;
-  std::shared_ptr<void> held;
 };
 
 TEST_F(EndedProgramTest, IsNotContinuedAfterASafeguardStopThatIsOver)
@@ -494,29 +501,14 @@ TEST_F(EndedProgramTest, IsNotContinuedAfterASafeguardStopThatIsOver)
 
 TEST_F(EndedProgramTest, IsNotAwaitedByAClaimThatDoesNotNeedIt)
 {
-  const auto claimed = std::async(std::launch::async, [&] {
+  lease.release();
+  auto claimed = std::async(std::launch::async, [&] {
     return robot->acquire_preempting(claim(), {.timeout = 60s, .since = before, .for_program = false});
   });
   EXPECT_EQ(claimed.wait_for(20s), std::future_status::ready);
-}
-
-/// What is in the way may be in the way for long, and the arm must not move when it is over.
-TEST_F(EndedProgramTest, IsNotAwaitedByAClaimThatHandGuidingKeepsFromTheArm)
-{
-  held.reset();
-  ASSERT_TRUE(becomes_ready_again());
-  lease.release();
-  Claim switching = claim();
-  switching.switches_hand_guiding = true;
-  auto guiding = robot->acquire(switching);
-  ASSERT_TRUE(guiding) << guiding.error().message;
-  ASSERT_TRUE(robot->control(*guiding)->freedriveMode());
-  guiding->release();
-  const auto claimed = std::async(std::launch::async, [&] {
-    return robot->acquire_preempting(claim(), {.timeout = 60s, .since = before});
-  });
-  EXPECT_EQ(claimed.wait_for(20s), std::future_status::ready);
-  robot->stop_motion();
+  const auto granted = claimed.get();
+  ASSERT_FALSE(granted);
+  EXPECT_EQ(granted.error().code, ErrorCode::program_stopped) << granted.error().message;
 }
 
 TEST_F(EndedProgramTest, IsNotTheReasonForWhichAHolderThatWasStoppedCannotMoveTheArm)
@@ -527,6 +519,31 @@ TEST_F(EndedProgramTest, IsNotTheReasonForWhichAHolderThatWasStoppedCannotMoveTh
   } catch (const RobotError & error) {
     EXPECT_EQ(error.error().message, stopped_by_the_driver().message);
   }
+}
+
+/// What is in the way may be in the way for long, and the arm must not move when it is over.
+TEST_F(LeaseTest, IsNotAwaitedForTheEndOfHandGuiding)
+{
+  const Generation before = robot->generation();
+  {
+    const Lease lease = acquire();
+    end_program(lease);
+  }
+  ASSERT_TRUE(becomes_ready_again());
+  Claim switching = claim();
+  switching.switches_hand_guiding = true;
+  {
+    const auto guiding = robot->acquire(switching);
+    ASSERT_TRUE(guiding) << guiding.error().message;
+    ASSERT_TRUE(robot->control(*guiding)->freedriveMode());
+  }
+  auto claimed = std::async(std::launch::async, [&] {
+    return robot->acquire_preempting(claim(), {.timeout = 60s, .since = before});
+  });
+  EXPECT_EQ(claimed.wait_for(20s), std::future_status::ready);
+  const auto granted = claimed.get();
+  ASSERT_FALSE(granted);
+  EXPECT_EQ(granted.error().code, ErrorCode::busy) << granted.error().message;
 }
 
 TEST_F(LeaseTest, IsNotGrantedToAClaimThatAStopHasOvertaken)
@@ -552,7 +569,8 @@ TEST_F(LeaseTest, IsNotGrantedToAClaimThatAStopHasOvertaken)
   EXPECT_TRUE(robot->may_continue(*newer)) << "it was preempted by a claim from before the stop";
 }
 
-/// The holder that a stop tells to end gives the arm back at once, while it still moves.
+/// The holder that a stop tells to end gives the arm back at once, while it still moves. A claim that does
+/// not wait for the program waits for the standstill too.
 TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm)
 {
   Claim holder = claim();
@@ -562,7 +580,7 @@ TEST_F(LeaseTest, IsNotGrantedBetweenTheReleaseOfAnotherAndTheStandstillOfItsArm
   move(*held);
   std::atomic<bool> was_moving{false};
   std::future<Expected<Lease>> next = std::async(std::launch::async, [&] {
-    auto lease = robot->acquire_preempting(claim(), {.timeout = 60s});
+    auto lease = robot->acquire_preempting(claim(), {.timeout = 60s, .for_program = false});
     was_moving = robot->is_moving();
     return lease;
   });

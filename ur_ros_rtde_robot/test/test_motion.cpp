@@ -114,28 +114,29 @@ TEST(MotionTrackerTest, CountsAProgramThatIsFoundPausedAsEnded)
   EXPECT_EQ(programs_after(RuntimeState::playing), begin + 2);
 }
 
-TEST(MotionTrackerTest, CountsASafetyStopWithoutAProgramAsEnd)
+TEST(MotionTrackerTest, CountsTheStopsOfTheRobotWithAndWithoutAProgram)
 {
   MotionTracker tracker;
   Sample sample{};
   sample.robot_mode = RobotMode::running;
   constexpr std::uint32_t normal = 1;
   constexpr std::uint32_t safeguard_stop = 1U << 4U;
-  const auto programs_after = [&](RuntimeState state, std::uint32_t safety) {
+  const auto stops_after = [&](RuntimeState state, std::uint32_t safety) {
     sample.runtime_state = state;
     sample.safety_status_bits = safety;
     ++sample.sequence;
     tracker.add(sample);
-    return tracker.view().program;
+    return tracker.view().robot_stops;
   };
-  const auto begin = programs_after(RuntimeState::stopped, normal);
-  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 1);
-  EXPECT_EQ(tracker.end_cause().code, ErrorCode::safeguard_stop);
-  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 1);
-  EXPECT_EQ(programs_after(RuntimeState::playing, normal), begin + 1);
-  EXPECT_EQ(programs_after(RuntimeState::playing, safeguard_stop), begin + 1)
-      << "the robot has not ended it yet";
-  EXPECT_EQ(programs_after(RuntimeState::stopped, safeguard_stop), begin + 2);
+  const auto begin = stops_after(RuntimeState::stopped, normal);
+  EXPECT_EQ(stops_after(RuntimeState::stopped, safeguard_stop), begin + 1);
+  EXPECT_EQ(tracker.stop_cause().code, ErrorCode::safeguard_stop);
+  EXPECT_EQ(tracker.end_cause().code, ErrorCode::none) << "no program has ended";
+  EXPECT_EQ(stops_after(RuntimeState::stopped, safeguard_stop), begin + 1);
+  EXPECT_EQ(stops_after(RuntimeState::playing, normal), begin + 1);
+  EXPECT_EQ(stops_after(RuntimeState::playing, safeguard_stop), begin + 2);
+  EXPECT_EQ(stops_after(RuntimeState::stopped, safeguard_stop), begin + 2);
+  EXPECT_EQ(stops_after(RuntimeState::stopped, normal), begin + 2);
 }
 
 TEST_F(ArrivalTest, IsProvenByThePackageInWhichTheOperationEnds)

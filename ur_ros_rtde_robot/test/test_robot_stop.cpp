@@ -277,8 +277,10 @@ TEST_F(LateSamplesTest, DoNotKeepAStopFromEndingAForeignProgram)
   controller.run_other_program();
   ASSERT_TRUE(eventually([&] { return program() == "PLAYING"; }));
   wait_until_late();
+  const auto link = robot->latest()->link;
   const auto stopping = begin_stop();
   EXPECT_TRUE(eventually([&] { return program() == "STOPPED"; }));
+  EXPECT_EQ(robot->latest()->link, link) << "the end of the connection has ended the program";
   stall(false);
   EXPECT_TRUE(stopping.get());
 }
@@ -314,17 +316,15 @@ TEST_F(LateSamplesTest, DoNotEndAPausedProgram)
   EXPECT_EQ(program(), "PAUSED");
 }
 
-TEST_F(LateSamplesTest, OfAConnectionThatIsLostLetAStopBeRepeatedOverTheNextOne)
+TEST_F(LateSamplesTest, OfAConnectionThatIsLostAreNotSaidToShowAProgram)
 {
   start(1500ms);
-  const auto link = robot->latest()->link;
   stall(true);
   controller.run_other_program();
   ASSERT_TRUE(eventually([&] { return program() == "PLAYING"; }));
   wait_until_late();
-  const auto report = begin_stop().get();
-  EXPECT_TRUE(report) << report.error().message;
-  EXPECT_NE(robot->latest()->link, link);
+  const auto report = begin_stop().get();  // it is repeated if the robot is connected again by then
+  EXPECT_TRUE(report || report.error().code == ErrorCode::link_lost) << report.error().message;
   EXPECT_EQ(program(), "STOPPED");
 }
 
@@ -357,6 +357,7 @@ TEST_F(LateSamplesTest, AreNoProofOfAStandstill)
   const double then = speed();
   EXPECT_TRUE(report) << report.error().message;
   EXPECT_LT(then, 0.02);
+  robot.reset();  // its thread uses the variables of this test
 }
 
 TEST_F(StopTest, SaysThatItCannotEndAForeignProgramInLocalControl)

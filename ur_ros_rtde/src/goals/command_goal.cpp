@@ -244,8 +244,9 @@ Status CommandGoal::acquire()
   }
   const bool preempts_all = command_->traits.preempts_all;  // a stop, which is executed in every state
   const auto may_go_on = [&] { return preempts_all ? Status() : is_not_overtaken(); };
-  if (Status now = may_go_on(); !now) {
-    return now;  // before it preempts anything
+  // Before it preempts anything. Whether its program continues is known after the stop under way.
+  if (!preempts_all && command_->host.stops() != stops_before_) {
+    return tl::unexpected(stopped_by_the_driver());
   }
   auto lease = robot().acquire_preempting(claim(), {.timeout = preemption_timeout,
                                                     .since = received_,

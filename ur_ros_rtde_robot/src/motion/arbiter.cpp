@@ -85,6 +85,9 @@ struct Lease::Table {
         return;
       }
       if (std::find(asked.begin(), asked.end(), holder) == asked.end()) {
+        if (!asked.empty() && stop.stop_requested()) {
+          return;  // the holder has come after what ends this claim
+        }
         asked.push_back(holder);
         lock.unlock();
         holder->claim().preempt(why);

@@ -154,7 +154,7 @@ class MotionStopper {
   /// the connection is lost, and if the options of the stop have changed.
   bool wait_for(double timeout, const std::function<bool(const Sample &)> & condition) const;
   bool wait_for_standstill(double timeout, const StopOptions & options) const;
-  /// Until the samples show the robot after this call. False as with wait_for.
+  /// Until the samples show the robot after this call. False also if the receiving thread hangs.
   bool wait_for_present() const;
   /// s, the age of the newest sample if that is late: it shows neither what has just begun nor a standstill.
   /// Otherwise 0.

@@ -18,10 +18,11 @@ class MotionTracker {
     bool at_rest = false;
     AsyncStatus async;
     bool program_running = false;
-    /// Incremented when the robot program ends, when it is found paused without having been seen to run, when
-    /// the robot stops (motion_blocker) without a program, and when the connection is re-established. Each of
-    /// them ends all motions, and what waits for the program to begin one.
+    /// Incremented when the robot program ends, when it is found paused without having been seen to run, and
+    /// when the connection is re-established, each of which ends all motions.
     std::uint32_t program = 0;
+    /// Incremented when the robot stops (motion_blocker), with or without a program.
+    std::uint32_t robot_stops = 0;
     std::uint64_t sequence = 0;
     double controller_time = 0.0;
     std::uint32_t link = 0;
@@ -49,10 +50,13 @@ class MotionTracker {
       return;
     }
     const bool found_paused = is_paused(sample) && !view_.program_running && !was_paused_;
+    const bool ended =
+        (view_.program_running && !sample.is_program_running()) || found_paused || sample.link != view_.link;
     const auto blocker = motion_blocker(sample);
-    const bool found_blocked = blocker && !was_blocked_ && !sample.is_program_running();
-    const bool ended = (view_.program_running && !sample.is_program_running()) || found_paused ||
-                       found_blocked || sample.link != view_.link;
+    const bool robot_stops = blocker && !was_blocked_;
+    if (robot_stops) {
+      stop_cause_ = *blocker;
+    }
     const bool same_word = sample.async == view_.async;
     standstill_.add(sample);
     arrival_.add(sample, !ended && operation_ends(sample));
@@ -69,6 +73,7 @@ class MotionTracker {
              .async = sample.async,
              .program_running = sample.is_program_running(),
              .program = view_.program + (ended ? 1U : 0U),
+             .robot_stops = view_.robot_stops + (robot_stops ? 1U : 0U),
              .sequence = sample.sequence,
              .controller_time = sample.controller_time,
              .link = sample.link,
@@ -86,6 +91,12 @@ class MotionTracker {
   {
     const std::lock_guard lock(mutex_);
     return end_cause_;
+  }
+  /// The newest stop of the robot.
+  Error stop_cause() const
+  {
+    const std::lock_guard lock(mutex_);
+    return stop_cause_;
   }
 
  private:
@@ -117,6 +128,7 @@ class MotionTracker {
   bool was_blocked_ = false;
   std::chrono::steady_clock::time_point received_{};  ///< of the newest sample
   Error end_cause_;
+  Error stop_cause_;
 };
 
 }  // namespace ur_ros_rtde

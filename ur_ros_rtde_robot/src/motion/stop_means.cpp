@@ -342,9 +342,13 @@ bool MotionStopper::wait_for_standstill(double timeout, const StopOptions & opti
 bool MotionStopper::wait_for_present() const
 {
   const double late = lateness();
-  const double present = state_.latest().value_or(Sample{}).controller_time + late;
-  return wait_for(program_stop_timeout + late,
-                  [&](const Sample & sample) { return sample.controller_time >= present; });
+  const double limit = program_stop_timeout + late;
+  const auto host_limit = Clock::now() + std::chrono::duration<double>(limit);
+  const double present =
+      tracker_.view().controller_time + late + static_cast<double>(sample_delay) * cycle_time();
+  const auto is_present = [&] { return tracker_.view().controller_time >= present; };
+  wait_for(limit, [&](const Sample &) { return is_present() || Clock::now() > host_limit; });
+  return is_present();
 }
 
 double MotionStopper::lateness() const

@@ -13,15 +13,16 @@ PERIOD = 1.0  # s
 
 class OtherDrivers:
     def __init__(self, nodes: Nodes, robots: Sequence[RobotTopics]):
-        self._node, self._robots = nodes.node, robots
-        self._shown = {robot.name_of("").rstrip("/") or "/" for robot in robots}
+        self._node = nodes.node
+        self._robots = {robot.name_of("").rstrip("/") or "/": robot.state for robot in robots}
         self._due = 0.0
 
     def update(self) -> None:
-        waiting = [robot.state for robot in self._robots if robot.state.joints is None]
+        waiting = {namespace: state for namespace, state in self._robots.items() if state.joints is None}
         if not waiting or time.monotonic() < self._due:
             return
         self._due = time.monotonic() + PERIOD
-        found = tuple(namespace for namespace in drivers(self._node) if namespace not in self._shown)
-        for state in waiting:
-            state.other_drivers = found
+        found = drivers(self._node)
+        others = tuple(namespace for namespace in found if namespace not in self._robots)
+        for namespace, state in waiting.items():
+            state.other_drivers = () if namespace in found else others  # its own may have no robot

@@ -27,6 +27,8 @@ struct Generation {
   std::uint32_t ends = 0;    ///< programs whose end a sample has shown
   std::uint32_t starts = 0;  ///< control programs that were started, taken over or given up
   std::uint32_t link = 0;    ///< Sample::link
+  /// Safety stops, and other states in which the robot cannot move, that have begun.
+  std::uint32_t robot_stops = 0;
   /// Of `ends`, those that this driver has brought about: a stop that ends the program, or a script.
   std::uint32_t ended_by_driver = 0;
   std::uint32_t restarted_by_driver = 0;  ///< of `starts`: the control program goes on after a script
