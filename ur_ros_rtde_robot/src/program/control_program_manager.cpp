@@ -128,8 +128,7 @@ std::optional<Error> ControlProgramManager::replacement() const
   if (state != ProgramState::foreign) {
     return std::nullopt;
   }
-  observation.remote_control =
-      true;  // in local control, too, it is the other program that has ended the motion
+  observation.remote_control = true;  // the other program has ended the motion, in local control too
   const RobotStatus status =
       program_status(state, observation, receiver_.latest().value_or(Sample{}).runtime_state, options_);
   return Error{status.cause, status.message};

@@ -47,6 +47,12 @@ void Connection::read()
       });
 }
 
+bool Connection::has_unread_data() const
+{
+  boost::system::error_code ignored;
+  return reading_ && socket_.available(ignored) > 0;
+}
+
 void Connection::handle_read(const boost::system::error_code & error, std::size_t size)
 {
   if (!open_) {

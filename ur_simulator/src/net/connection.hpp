@@ -55,6 +55,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   std::uint64_t id() const { return id_; }
   bool is_open() const { return open_; }
+  /// Data has arrived that will be read next. If the peer has closed the connection since, sending a message
+  /// fails, and the connection would be closed before.
+  bool has_unread_data() const;
   /// Address and port of the peer: "127.0.0.1:43210"
   const std::string & remote_endpoint() const { return remote_endpoint_; }
   /// The peer in the client log. Protocols add their messages here.

@@ -21,7 +21,7 @@ void ClientInterfaceServer::broadcast(std::string_view message, std::string_view
 {
   sessions_.for_each([&](ScriptSession & session) {
     Connection & connection = session.connection();
-    if (connection.send_or_drop(message) && !name.empty()) {
+    if (!connection.has_unread_data() && connection.send_or_drop(message) && !name.empty()) {
       connection.log().to_peer("{}", name);
     }
   });

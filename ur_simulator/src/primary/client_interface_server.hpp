@@ -15,7 +15,8 @@ namespace ur_simulator::primary {
 
 /// One of the client interfaces: 30001 primary, 30002 secondary, 30003 real-time, or the read-only variant of
 /// one: 30011, 30012, 30013 (UR, "Client Interface"). Runs the scripts that clients send and sends them
-/// messages. Messages are dropped for clients that do not read; their connections stay open.
+/// messages. Messages are dropped for clients that do not read, and for those whose script is read next;
+/// their connections stay open.
 class ClientInterfaceServer {
  public:
   /// Returns the messages for a new client; may be null.
