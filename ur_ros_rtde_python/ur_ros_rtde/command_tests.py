@@ -1,4 +1,4 @@
-"""The tests that a command passes which moves the arm, whatever it does. In a test module:
+"""The tests that every command which moves the arm has to pass. In a test module:
 
     from ur_ros_rtde.command_tests import MovingCommandTests
 

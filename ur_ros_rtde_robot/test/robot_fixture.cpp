@@ -32,13 +32,10 @@ void RobotFixture::make_both(const RobotOptions & options)
   ASSERT_TRUE(becomes_ready());
 }
 
-void RobotFixture::make_both_slow()
+void RobotFixture::make_both_slow(const RobotOptions & options)
 {
-  constexpr double slowness = 10.0;
-  auto options = Controller::options();
-  options.real_time_factor /= slowness;
-  controller.start(options);
-  make_robot();
+  controller.start(Controller::slow_options());
+  make_robot(options);
   ASSERT_TRUE(becomes_ready());
 }
 

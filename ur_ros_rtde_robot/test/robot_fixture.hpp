@@ -27,9 +27,9 @@ struct RobotFixture : testing::Test {
 
   void make_robot(RobotOptions options = robot_options());
   void make_both(const RobotOptions & options = robot_options());
-  /// With a simulated robot that is slow, so that delays of a busy host are short in its time: a stop takes
-  /// the next means if the control program does not take its command within some control cycles.
-  void make_both_slow();
+  /// With Controller::slow_options(): a stop takes the next means if the control program does not take its
+  /// command within some control cycles.
+  void make_both_slow(const RobotOptions & options = robot_options());
   /// Waits for the state; the failure message is the log.
   testing::AssertionResult comes_to(RobotState state, ErrorCode cause = ErrorCode::none,
                                     std::chrono::milliseconds timeout = 20s);

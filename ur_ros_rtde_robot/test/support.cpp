@@ -49,6 +49,13 @@ ur_simulator::SimulatorOptions Controller::options()
   return result;
 }
 
+ur_simulator::SimulatorOptions Controller::slow_options()
+{
+  auto result = options();
+  result.real_time_factor /= 10.0;
+  return result;
+}
+
 void Controller::start(const ur_simulator::SimulatorOptions & options)
 {
   controller_ = std::make_unique<ur_simulator::SimulatedController>(options);

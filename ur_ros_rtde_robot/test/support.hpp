@@ -32,6 +32,9 @@ class Controller {
   Controller() = default;
   explicit Controller(const ur_simulator::SimulatorOptions & options) { start(options); }
   static ur_simulator::SimulatorOptions options();
+  /// The same of a robot whose time passes at a tenth of the speed, so that delays of a busy host are short
+  /// in its time.
+  static ur_simulator::SimulatorOptions slow_options();
 
   void start(const ur_simulator::SimulatorOptions & options = Controller::options());
   void stop() { controller_.reset(); }

@@ -12,18 +12,8 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-constexpr double slowness = 10.0;
-
 struct LeaseTest : RobotFixture {
-  void SetUp() override { start(robot_options()); }
-  void start(const RobotOptions & of_robot)
-  {
-    auto options = Controller::options();
-    options.real_time_factor /= slowness;
-    controller.start(options);
-    make_robot(of_robot);
-    ASSERT_TRUE(becomes_ready());
-  }
+  void SetUp() override { make_both_slow(); }
 
   /// A joint motion of the holder, well under way.
   void move(const Lease & lease)
@@ -476,7 +466,7 @@ struct EndedProgramTest : LeaseTest {
   {
     auto options = robot_options();
     options.restart_program = false;
-    start(options);
+    make_both_slow(options);
     before = robot->generation();
     lease = acquire();
     end_program(lease);

@@ -10,17 +10,6 @@
 namespace ur_ros_rtde::test {
 namespace {
 
-constexpr double slowness = 10.0;
-
-/// Of a robot that is slow, so that delays of a busy host are short in the robot's time, which the watchdog
-/// measures.
-ur_simulator::SimulatorOptions slow_controller()
-{
-  auto options = Controller::options();
-  options.real_time_factor /= slowness;
-  return options;
-}
-
 /// A process with a driver that moves the arm until it is killed. Construct it before the test starts a
 /// thread.
 class DriverProcess {
@@ -84,7 +73,7 @@ bool program_stops(Controller & controller)
 TEST(WatchdogTest, StopsTheArmWhenTheDriverIsKilled)
 {
   const DriverProcess driver;
-  Controller controller(slow_controller());
+  Controller controller(Controller::slow_options());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   driver.send(SIGKILL);
   const double time = time_to_rest(controller);
@@ -96,7 +85,7 @@ TEST(WatchdogTest, StopsTheArmWhenTheDriverIsKilled)
 TEST(WatchdogTest, StopsTheArmWhenTheDriverHangs)
 {
   const DriverProcess driver;
-  Controller controller(slow_controller());
+  Controller controller(Controller::slow_options());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   driver.send(SIGSTOP);  // all its connections stay open
   EXPECT_LT(time_to_rest(controller), 0.4);
@@ -106,7 +95,7 @@ TEST(WatchdogTest, StopsTheArmWhenTheDriverHangs)
 TEST(WatchdogTest, LetsALiveDriverContinue)
 {
   const DriverProcess driver;
-  Controller controller(slow_controller());
+  Controller controller(Controller::slow_options());
   ASSERT_TRUE(eventually([&] { return base_speed(controller) > 0.45; }, 30s));
   const double begin = controller.state().at("timestamp").get<double>();
   const double end = begin + 5.0 / RobotOptions().watchdog_frequency;
