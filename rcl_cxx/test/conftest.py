@@ -1,47 +1,17 @@
 """Starts a node of rcl_cxx in a separate process and tests it with rclpy."""
 
-import fcntl
 import os
 import pathlib
 import signal
 import subprocess
-import tempfile
 import threading
 import time
 
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
 LIMIT = 10.0
-
-_own_domain = None
-
-
-def _reserve_domain():
-    """Reserves a ROS domain that is unique on this machine, by locking a file until the process exits.
-
-    The project's test runner does the same and sets the domain in the environment.
-    """
-    global _own_domain
-    folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
-    folder.mkdir(exist_ok=True)
-    for domain in range(1, 102):
-        lock = (folder / str(domain)).open("w")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            continue
-        _own_domain = lock
-        return str(domain)
-    raise RuntimeError("all ROS domains are in use by other tests")
-
-
-# Before rclpy is used for the first time.
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-if "ROS_DOMAIN_ID" not in os.environ:
-    os.environ["ROS_DOMAIN_ID"] = _reserve_domain()
-
-import pytest  # noqa: E402
-import rclpy  # noqa: E402
-from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 
 
 def eventually(condition, limit=LIMIT):

@@ -1,24 +1,28 @@
-#include <fcntl.h>
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 
 namespace {
-constexpr int kLastDomain = 101;
+constexpr int kFirstPort = 32768;  // of domain_coordinator, as kLastDomain
+constexpr std::uint16_t kLastDomain = 100;
 
-/// Takes a ROS domain that no other test on this machine uses, by locking a file until the process ends. The
-/// project's test runner does the same and sets the domain in the environment.
+/// Takes a ROS domain that no other test on this machine uses, as ROS's domain_coordinator does: the process
+/// that has bound a port has its domain. The project's test runner does the same and sets the domain in the
+/// environment.
 void take_own_domain()
 {
-  const auto folder = std::filesystem::temp_directory_path() / ("ur-domains-" + std::to_string(::getuid()));
-  std::filesystem::create_directories(folder);
-  for (int domain = 1; domain <= kLastDomain; ++domain) {
-    const int fd = ::open((folder / std::to_string(domain)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0) {
+  for (std::uint16_t domain = 1; domain <= kLastDomain; ++domain) {
+    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = ::htons(static_cast<std::uint16_t>(kFirstPort + domain));
+    if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr *>(&address), sizeof(address)) == 0) {
       ::setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
       return;
     }

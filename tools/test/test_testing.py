@@ -1,11 +1,13 @@
 """./ur test: a failure fails the run even if the repetition succeeds. Options are passed to the correct program."""
 
+import json
 import os
 import pathlib
+import subprocess
 import sys
 
 import pytest
-from ur_tools import main, runner, schedule, summary, testing
+from ur_tools import main, packages, runner, schedule, summary, testing
 from ur_tools.layout import Layout
 
 REPORT = """<testsuites><testsuite>
@@ -38,6 +40,21 @@ def test_files_of_the_same_name_have_different_test_names(tmp_path):
         (tmp_path / folder / "test_shutdown.py").write_text("")
     found = testing._pytest(Layout.of_environment(), "driver", tmp_path)
     assert [test.name for test in found] == ["driver: nodes/test_shutdown", "driver: typed/test_shutdown"]
+
+
+def ctest_of_pytest_files(package):
+    listing = subprocess.run(["ctest", "--show-only=json-v1"], cwd=Layout.of_environment().build / package, check=True,
+                             stdout=subprocess.PIPE, universal_newlines=True).stdout
+    commands = [test["command"] for test in json.loads(listing)["tests"] if "pytest" in test.get("command", [])]
+    assert all("run_test_isolated.py" in command[2] for command in commands)
+    return {pathlib.Path(part) for command in commands for part in command if part.endswith(".py") and "/test_" in part}
+
+
+def test_colcon_test_runs_the_python_tests_of_every_package():
+    folders = {name: package.folder / "test" for name, package in packages.discover().items()}
+    files = {name: set(folder.rglob("test_*.py")) for name, folder in folders.items()}
+    assert {name: ctest_of_pytest_files(name) for name, found in files.items() if found} == {name: found for name, found in
+                                                                                             files.items() if found}
 
 
 def test_a_file_that_measures_time_reserves_a_core(tmp_path):

@@ -1,47 +1,39 @@
 """Isolates tests that run in parallel, and removes the processes and shared memory that they leave behind."""
 
-import fcntl
 import os
 import pathlib
 import shutil
 import signal
-import tempfile
-import threading
-from typing import IO, Dict, Optional, Set
+import socket
+from typing import Dict, Optional, Set
 
 from .console import Failure
 
 MARK = "UR_TEST_RUN"  # environment variable of every process that a test run starts
-LAST_DOMAIN = 101  # the ports of higher domains may be ephemeral ports
+FIRST_PORT, LAST_DOMAIN = 32768, 100  # of domain_coordinator
 _SHARED_MEMORY = pathlib.Path("/dev/shm")
-_lock = threading.Lock()
 
 
 class Domain:
-    """Reserves a ROS domain and a loopback address on this machine."""
+    """Reserves a ROS domain and a loopback address on this machine, as ROS's domain_coordinator does: its owner has bound a port."""
 
     def __init__(self) -> None:
         self.number = 0
-        self._file: Optional[IO[str]] = None
+        self._reservation: Optional[socket.socket] = None
 
     def __enter__(self) -> "Domain":
-        folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
-        folder.mkdir(exist_ok=True)
-        with _lock:
-            for number in range(1, LAST_DOMAIN + 1):
-                file = (folder / str(number)).open("w")
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except OSError:
-                    file.close()
-                    continue
-                self.number, self._file = number, file
+        for self.number in range(1, LAST_DOMAIN + 1):
+            self._reservation = socket.socket()
+            try:
+                self._reservation.bind(("", FIRST_PORT + self.number))
                 return self
+            except OSError:
+                self._reservation.close()
         raise Failure(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
 
     def __exit__(self, *_unused: object) -> None:
-        if self._file:
-            self._file.close()
+        if self._reservation:
+            self._reservation.close()
 
     def environment(self) -> Dict[str, str]:
         return {"ROS_DOMAIN_ID": str(self.number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",

@@ -8,7 +8,7 @@ import shlex
 import numpy as np
 import pytest
 import yaml
-from support import Simulator, wait_for
+from support import Simulator, own_address, wait_for
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck
 from ur_ros_rtde_cli.robot_check.finding import State
@@ -16,7 +16,7 @@ from ur_ros_rtde_description.calibration import read_calibration
 from ur_ros_rtde_description.kinematics import flange_pose, nominal_origins
 from ur_ros_rtde_description.models import find_model
 
-ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.203")
+ADDRESS = own_address()
 PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "description.md").read_text()
 POSITIONS = ([0.3, -1.2, 1.1, -0.4, 0.9, 2.0], [-1.0, -2.0, -1.5, 0.7, -1.2, -0.5], [2.2, -0.4, 0.3, -1.9, 1.6, 0.1])
 

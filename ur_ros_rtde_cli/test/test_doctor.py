@@ -9,14 +9,14 @@ import sys
 import threading
 
 import pytest
-from support import Process, Simulator, find_program, wait_for
+from support import Process, Simulator, find_program, own_address, wait_for
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check import host, identity, inputs, link, stream
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck
 from ur_ros_rtde_cli.robot_check.finding import State
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
 
-ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.202")
+ADDRESS = own_address()
 FOLDER = pathlib.Path(__file__).resolve().parent
 PORTS = {"dashboard": (29999, "Dashboard Server"), "primary": (30001, "Primary Client"), "secondary": (30002, "Secondary Client"),
          "realtime": (30003, "Real-Time Client"), "rtde": (30004, "RTDE")}

@@ -16,17 +16,15 @@ robot_model, simulator_options or driver_parameters takes the place of the one h
 """
 
 import contextlib
-import fcntl
-import os
 import pathlib
 import signal
 import subprocess
-import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 
+import domain_coordinator
 import pytest
 from ament_index_python import get_package_prefix
 from ur_simulator import SimulatedRobot, SimulatorError
@@ -35,7 +33,6 @@ from .errors import CommandFailed, Rejected
 from .robot import Robot
 
 HOME = (0.0, -1.57, 1.57, -1.57, -1.57, 0.0)  # rad
-_LAST_DOMAIN = 101  # ports of higher domains may be ephemeral ports of the system
 _READY_TIMEOUT = 60.0  # s; the driver takes 0.3 s on an idle machine
 _EXIT_TIMEOUT = 15.0  # s
 # A controller unlocks a protective stop after 5 s.
@@ -102,23 +99,13 @@ class Driver:
         self.stop()
 
 
-def _lock_free_domain(files: contextlib.ExitStack) -> int:
-    """Returns a ROS domain that no other test on this machine uses until `files` are closed."""
-    folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
-    folder.mkdir(exist_ok=True)
-    for number in range(1, _LAST_DOMAIN + 1):
-        file = files.enter_context((folder / str(number)).open("w"))
-        with contextlib.suppress(OSError):
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return number
-    raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use by other tests")
-
-
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
     """A ROS domain of its own for this process and its children, which other hosts do not see: a goal of a test reaches no robot."""
-    with contextlib.ExitStack() as files, pytest.MonkeyPatch.context() as environment:
-        number = _lock_free_domain(files)
+    reserved = contextlib.ExitStack()
+    number = reserved.enter_context(domain_coordinator.domain_id())
+    # Not `with reserved`: domain_id() takes an OSError of what runs in the domain for one of its own.
+    with contextlib.closing(reserved), pytest.MonkeyPatch.context() as environment:
         environment.setenv("ROS_DOMAIN_ID", str(number))
         environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         yield number

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, start_node
+from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, own_address, start_node
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
@@ -24,7 +24,7 @@ RIGHT = "right"  # a namespace without a driver: the test publishes its topics
 
 @pytest.fixture(scope="module")
 def simulator():
-    started = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"), "--surface", "z=-0.3")
+    started = Simulator(own_address(), "--surface", "z=-0.3")
     yield started
     started.stop()
 

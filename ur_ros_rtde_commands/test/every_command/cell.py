@@ -1,21 +1,18 @@
 """A robot cell for one test: simulator, driver and client, with a separate address and ROS domain."""
 
-import fcntl
-import os
-import pathlib
-import tempfile
+import contextlib
 import time
 
+import domain_coordinator
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from support import HOME, Client, Simulator, start_node, wait_for
+from support import HOME, Client, Simulator, own_address, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
-LAST_DOMAIN = 101  # ports of higher domains may be ephemeral ports of the system
 EXAMPLE_LIMIT = 20.0  # s, time limit of the examples in the documentation
 SETTINGS = ("tcp_offset", "payload", "io", "robot_mode", "safety_mode", "remote_control", "freedrive", "popup")
 STATUS = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -31,28 +28,14 @@ CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper(
 
 
 class Domain:
-    """A ROS domain that is unique on this machine. The process that locks its file owns it, as in the project's test runner."""
+    """A ROS domain that no other test on this machine uses."""
 
     def __init__(self):
-        folder = pathlib.Path(tempfile.gettempdir()) / f"ur-domains-{os.getuid()}"
-        folder.mkdir(exist_ok=True)
-        for self.number in range(1, LAST_DOMAIN + 1):
-            self._lock = (folder / str(self.number)).open("w")
-            try:
-                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                return
-            except OSError:
-                self._lock.close()
-        raise RuntimeError("all ROS domains are in use by other tests")
+        self._reserved = contextlib.ExitStack()
+        self.number = self._reserved.enter_context(domain_coordinator.domain_id())
 
     def close(self):
-        self._lock.close()
-
-
-def address(number):
-    """Returns a loopback address for this test run. `./ur test` assigns a different base address to each test file."""
-    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
-    return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
+        self._reserved.close()
 
 
 class StatusTrackingClient(Client):
@@ -95,7 +78,7 @@ class Cell:
         self.number, self.setup = number, setup
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number)}
-        self.simulator = Simulator(address(number), model=setup.controller)
+        self.simulator = Simulator(own_address(number), model=setup.controller)
         self.client = StatusTrackingClient(self._domain.number, f"test_client_{number}")
         self.driver, self._plugins = None, None
         self._publishers = []

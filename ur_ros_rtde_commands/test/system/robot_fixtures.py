@@ -1,10 +1,9 @@
 """Fixtures for tests with a simulated robot: the simulator, a driver connected to it, and a client."""
 
-import os
 import time
 
 import pytest
-from support import HOME, REAL_TIME_FACTOR, RECOVERY_TIME_FACTOR, Client, Simulator, start_node, wait_for
+from support import HOME, REAL_TIME_FACTOR, RECOVERY_TIME_FACTOR, Client, Simulator, own_address, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -15,15 +14,9 @@ SLOWNESS = 10.0  # s of the host for each s of a slow robot
 STARTING = (ErrorCode.NOT_READY, ErrorCode.PROGRAM_STOPPED, ErrorCode.LINK_LOST)
 
 
-def _address(number):
-    """Returns a loopback address for this test run. `./ur test` assigns a different base address to each test file."""
-    given = os.environ.get("UR_TEST_ADDRESS", "127.0.1.200").split(".")
-    return ".".join([given[0], str(int(given[1]) + number), given[2], given[3]])
-
-
 @pytest.fixture(scope="session")
 def addresses():
-    return [_address(number) for number in range(4)]
+    return [own_address(number) for number in range(4)]
 
 
 @pytest.fixture(scope="module")

@@ -385,10 +385,16 @@ def robot_seconds(stamp):
     return REAL_TIME_FACTOR * seconds(stamp)
 
 
+def own_address(number=0):
+    """Returns a loopback address of this test: each run has a ROS domain of its own, and `./ur test` reserves an address with it."""
+    first, second, *others = os.environ.get("UR_TEST_ADDRESS", f"127.0.1.{os.environ.get('ROS_DOMAIN_ID', '0')}").split(".")
+    return ".".join([first, str(int(second) + number), *others])
+
+
 @contextlib.contextmanager
 def simulated_robot(*parameters, model="ur10e", env=None):
     """Yields a simulator whose driver, with these parameters, accepts motions."""
-    simulator = Simulator(os.environ.get("UR_TEST_ADDRESS", "127.0.1.200"), model=model)
+    simulator = Simulator(own_address(), model=model)
     driver = start_node("driver", simulator.address, *parameters, env=env)
     client = Client()
     try:
