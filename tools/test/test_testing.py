@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import time
 
 import pytest
 from ur_tools import main, packages, runner, schedule, summary, testing
@@ -88,12 +89,12 @@ def test_a_background_test_has_a_low_priority(tmp_path, monkeypatch):
     assert f"niceness {min(19, os.nice(0) + runner.BACKGROUND_NICENESS)}" in output
 
 
-@pytest.mark.parametrize("thorough", [False, True])
-def test_the_tests_know_whether_the_run_is_thorough(tmp_path, monkeypatch, thorough):
+@pytest.mark.parametrize("period, thorough", [(-1.0, False), (60.0, True)])
+def test_the_tests_know_whether_the_run_is_still_thorough(tmp_path, monkeypatch, period, thorough):
     monkeypatch.delenv("UR_TEST_THOROUGH", raising=False)
     monkeypatch.setattr(runner, "ROOT", tmp_path)
     test = runner.Test("a: test", ["sh", "-c", "echo thorough: $UR_TEST_THOROUGH; exit 1"], tmp_path, 20.0)
-    with runner.Runner(Layout.of_environment(), tmp_path, thorough=thorough) as started:
+    with runner.Runner(Layout.of_environment(), tmp_path, thorough_until=time.monotonic() + period) as started:
         assert ("thorough: 1" in started.run(test).output) is thorough
 
 

@@ -262,7 +262,7 @@ def _parser() -> Tuple[argparse.ArgumentParser, List[str]]:
                       help="time limit of one test in seconds (default: the limit that its package sets, else 120)")
     test.add_argument("--repeat", type=int, default=1, metavar="N", help="run each test N times (default: 1)")
     test.add_argument("--thorough", action="store_true",
-                      help="fuzz replays of 30 s of processor time instead of 5 s, as continuous integration runs them")
+                      help="in the first hour, fuzz replays of 30 s of processor time instead of 5 s, as in continuous integration")
 
     build = add("build", command_build, "set up the environment and build what changed")
     _add_build_options(build)

@@ -159,9 +159,11 @@ def _lower_priority(pid: int) -> None:
 class Runner:
     """Runs tests of one build. `run` may be called from several threads."""
 
-    def __init__(self, layout: Layout, folder: pathlib.Path, limit: float = 0.0, thorough: bool = False):
-        """`folder` receives the logs. `limit` replaces the limits of the tests, s; 0: none."""
-        self._folder, self._limit = folder, limit
+    def __init__(self, layout: Layout, folder: pathlib.Path, limit: float = 0.0, thorough_until: float = 0.0):
+        """`folder` receives the logs. `limit` replaces the limits of the tests, s; 0: none.
+
+        Tests that start before `thorough_until`, on the monotonic clock, are thorough."""
+        self._folder, self._limit, self._thorough_until = folder, limit, thorough_until
         self._env = run_environment(layout)
         self._env.update(_sanitizer_environment())
         self._patience = 1.0
@@ -170,8 +172,6 @@ class Runner:
             self._env["UR_TEST_CELLS"] = "1"
             self._env["UR_TEST_REAL_TIME_FACTOR"] = str(SANITIZED_REAL_TIME_FACTOR)
         self._env["UR_TEST_PATIENCE"] = str(self._patience)
-        if thorough:
-            self._env["UR_TEST_THOROUGH"] = "1"
         self._env["ROS_LOG_DIR"] = str(folder / "ros")
         self._env.pop("PYTHONDONTWRITEBYTECODE", None)
         self._env["PYTHONPATH"] = os.pathsep.join([self._env["PYTHONPATH"], str(TOOLS)])  # for host_stalls.py
@@ -217,6 +217,8 @@ class Runner:
         if report.exists():
             report.unlink()  # from an earlier run
         env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+        if time.monotonic() < self._thorough_until:
+            env["UR_TEST_THOROUGH"] = "1"
         command = test.command + ([f"--junitxml={report}"] if test.is_pytest else [])
         limit = self._limit or self._patience * test.limit
         start = time.monotonic()

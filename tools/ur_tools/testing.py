@@ -27,6 +27,7 @@ PYTEST_LIMIT = 1200.0
 MARKERS = re.compile(r"^(MEASURES_TIME|BACKGROUND|BROWSER|LOAD|GROUP) = (True|\d+\.\d+|\"\w+\")", re.M)
 BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
 LAST_LABEL = "last"  # of a CTest test: a background test that starts when no other test waits
+THOROUGH_PERIOD = 3600.0  # s, from the start of the build: on a slow host, fuzz replays that start later are short
 SHOWN_LINES = 60  # of a failed test's output
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
@@ -193,6 +194,7 @@ def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
 def run(options: Options) -> int:
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's "&" ignores it, and tests would inherit that
+    thorough_until = time.monotonic() + THOROUGH_PERIOD if options.thorough else 0.0
     chosen = _select(options)
     if chosen.packages == [] and options.changed:
         building.setup(options.layout)
@@ -201,10 +203,10 @@ def run(options: Options) -> int:
         packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
     if "ur_ros_rtde_viewer" in packages:
         building.setup_viewer(options.layout)
-    return _run_selected(options, chosen, packages)
+    return _run_selected(options, chosen, packages, thorough_until)
 
 
-def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[str, Package]) -> int:
+def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[str, Package], thorough_until: float) -> int:
     start = time.monotonic()
     with Lock("test"):
         tests = _collect(options, packages, chosen)
@@ -219,8 +221,10 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
                 console.line(f"FAILED  {check.name}\n{check.text}")
         console.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
         folder = isolation.fresh_folder(options.layout.base / "test")
-        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout, options.thorough) as runner:
+        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout, thorough_until) as runner:
             results = _run_all(options, runner, tests)
+            if 0.0 < thorough_until < time.monotonic():
+                console.line(f"Fuzz replays that started after {THOROUGH_PERIOD / 60.0:.0f} min were short.")
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
     if not (options.names or options.changed):
         console.line("\n" + boilerplate.table())

@@ -1,6 +1,5 @@
 """`ur calibration` reads the calibration of a simulated arm, and the description follows it."""
 
-import os
 import pathlib
 import re
 import shlex

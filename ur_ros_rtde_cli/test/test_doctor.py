@@ -1,6 +1,5 @@
 """`ur doctor --robot` names each fault of a simulated robot."""
 
-import os
 import pathlib
 import re
 import socketserver

@@ -1,6 +1,5 @@
 """The viewer with a simulator and the driver, and with messages of a test; without a browser."""
 
-import os
 import pathlib
 import time
 
