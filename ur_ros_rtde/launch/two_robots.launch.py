@@ -15,7 +15,7 @@ def generate_launch_description():
 def check(context, given):
     values = {**{argument.name: argument.default for argument in TWO_ROBOTS}, **given}
     for name in UNIQUE:
-        left, right = values[f"left_{name}"], values[f"right_{name}"]
+        left, right = (values[f"{side}_{name}"].strip("/") for side in SIDES)  # the namespaces "arm" and "/arm" are one
         if left == right and (left or name != "robot_ip"):  # without addresses, see below
             raise ArgumentError(f"left_{name} and right_{name} are both \"{left}\", they must differ")
     others = context.launch_configurations

@@ -118,6 +118,11 @@ def test_a_robot_that_does_not_answer_is_reported(simulator, capsys):
     assert f"port 30001: Connection refused; `ur doctor --robot {ADDRESS}` finds the cause" in capsys.readouterr().err
 
 
+def test_a_text_that_is_no_address_is_reported(capsys):
+    assert main(["calibration", "--robot", "192.168.56..101"]) == 1
+    assert "192.168.56..101 is no address" in capsys.readouterr().err
+
+
 def test_the_commands_in_the_documentation_work(simulator, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^ur (calibration .*)$", PAGE, re.M)

@@ -171,6 +171,15 @@ def test_the_result_can_be_piped_to_head(at_home):
     assert at_home.state()["at_rest"]
 
 
+def test_a_reader_of_json_that_ends_cancels_the_goal(at_home):
+    command = [part for part in slow_motion() if part != "--quiet"]
+    process = Process(["bash", "-c", 'set -o pipefail; "$@" --json | head -1', "bash", *command])
+    process.wait_for_output("canceling (SIGPIPE)")
+    assert process.wait(TIMEOUT_FACTOR * 20.0) == 128 + signal.SIGPIPE, process.output()
+    assert at_home.state()["at_rest"]
+    assert any(line.startswith('{"feedback"') for line in process.lines), process.output()
+
+
 @pytest.fixture
 def unresponsive_server():
     """A move_j server that neither cancels nor finishes goals. Returns the goals that it has received."""

@@ -13,8 +13,10 @@ from std_msgs.msg import Bool
 from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
 from ur_ros_rtde_cli import print_state, view
 from ur_ros_rtde_cli.errors import CliError
-from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
+from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS, main
 from ur_ros_rtde_cli.namespaces import other_drivers
+
+from ur_ros_rtde_msgs.msg import ActiveModes
 
 
 def test_shows_the_version():
@@ -38,10 +40,33 @@ def test_shows_the_state(running):
 
 def test_the_state_names_fake_joint_positions():
     joints = JointState(name=["left_shoulder_lift_joint", "left_elbow_joint"], position=[1.0, 2.0], velocity=[0.0, 0.0])
-    warning, *rows = print_state.state_lines({"joint_states": joints, "joint_states_are_fake": Bool(data=True)})
+    warning, *rows = print_state.state_lines(print_state.Latest(joint_states=joints, joint_states_are_fake=Bool(data=True)))
     assert warning == "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
     assert len(rows) == 2 and len({row.index(" rad ") for row in rows}) == 1, rows
-    assert len(list(print_state.state_lines({"joint_states": joints, "joint_states_are_fake": Bool()}))) == 2
+    assert len(list(print_state.state_lines(print_state.Latest(joint_states=joints, joint_states_are_fake=Bool())))) == 2
+
+
+def test_the_state_says_that_it_is_old_and_names_active_modes(monkeypatch):
+    latest, clock = print_state.Latest(active_modes=ActiveModes(names=["force_mode"])), [100.0]
+    monkeypatch.setattr(print_state.time, "monotonic", lambda: clock[0])
+    latest.take("joint_states", JointState())
+    assert list(print_state.state_lines(latest)) == ["active_modes   force_mode"]
+    clock[0] += 3.0
+    assert next(iter(print_state.state_lines(latest))).startswith("no joint_states for 3 s: the driver has ended or has lost the robot")
+
+
+@pytest.mark.parametrize("arguments", [["state"], ["call", "move_j"], ["record", "run.csv"]])
+def test_an_invalid_namespace_is_rejected(arguments, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([*arguments, "--namespace", "my-robot"])
+    assert end.value.code == 2 and '"my-robot" is no namespace' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["call", "state", "plot"])
+def test_each_command_shows_the_version(command, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([command, "--version"])
+    assert end.value.code == 0 and capsys.readouterr().out.startswith("ur_ros_rtde ")
 
 
 def test_a_missing_driver_is_reported_after_the_wait():

@@ -64,3 +64,11 @@ def test_reports_what_cannot_be_compared(tmp_path, monkeypatch, capsys, columns,
     write(tmp_path / "b.csv", *columns)
     assert main.main(["compare", "a.csv", "b.csv", *arguments]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_rejects_time_that_goes_back(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "a.csv", "height")
+    (tmp_path / "b.csv").write_text("timestamp,height\n0,1\n0.5,1\n0.2,1\n")
+    assert main.main(["compare", "a.csv", "b.csv"]) == 2
+    assert "b.csv: the time of row 3 is earlier than that of the row before" in capsys.readouterr().err

@@ -64,6 +64,7 @@ def test_writes_a_figure(file, monkeypatch, capsys, arguments, name):
     ("timestamp,a\n0,1\n", [], "has 1 rows: expected 2 or more"),
     ("timestamp,a\n0,1\n1\n", [], "run.csv:3 has 1 values: expected 2"),
     ("timestamp,a\n0,1\n1,x\n", [], "run.csv:3: could not convert string to float: 'x'"),
+    ("timestamp\n0\n1\n", [], "run.csv has no output besides timestamp: record with `ur record run.csv timestamp actual_q`"),
     ("timestamp,a\n0,1\n1,2\n", ["b"], "run.csv has no output b. It has: a"),
     ("timestamp,a\n0,1\n1,2\n", ["--output", "figure.doc"], "figure.doc: the name of a figure ends with .png, .pdf, .svg"),
 ])

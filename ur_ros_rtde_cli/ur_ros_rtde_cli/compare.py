@@ -10,6 +10,8 @@ the given time.
 import argparse
 import pathlib
 
+from .errors import CliError
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("first", type=pathlib.Path, help="CSV file")
@@ -24,7 +26,12 @@ def run(options: argparse.Namespace) -> int:
     from .recording import Recording  # imported here because --help does not need numpy
     from .recording_comparison import compare, report
     from .recording_figure import draw
-    comparison = compare(Recording.read(options.first), Recording.read(options.second), options.fields, options.shift)
+    first, second = Recording.read(options.first), Recording.read(options.second)
+    for path, recording in ((options.first, first), (options.second, second)):
+        back = recording.first_step_back()
+        if back is not None:
+            raise CliError(f"{path}: the time of row {back + 1} is earlier than that of the row before: is it a recording of one robot?")
+    comparison = compare(first, second, options.fields, options.shift)
     print(report(comparison))
     name = options.first.with_name(f"{options.first.stem}_{options.second.stem}.png")
     print(draw(comparison.first, options.output or name, comparison.second))

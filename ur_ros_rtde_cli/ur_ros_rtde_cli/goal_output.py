@@ -1,5 +1,6 @@
 """Prints what happens to a goal: for people, or as JSON for programs."""
 
+import contextlib
 import sys
 from typing import Any
 
@@ -45,7 +46,8 @@ class JsonOutput:
 
     def feedback(self, message: Any) -> None:
         if not self._quiet:
-            self._write({"feedback": message.feedback})
+            with contextlib.suppress(BrokenPipeError):  # noticed by PendingInterruption, which cancels the goal
+                self._write({"feedback": message.feedback})
 
     def clear(self) -> None:
         """Nothing is shown in place."""

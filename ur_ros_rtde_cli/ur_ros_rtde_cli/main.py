@@ -75,13 +75,16 @@ def _add_arguments(command: str, parser: argparse.ArgumentParser) -> None:
     module = importlib.import_module(f"{__package__}.{command}")
     parser.description, parser.formatter_class = module.__doc__, argparse.RawDescriptionHelpFormatter
     if command not in WITHOUT_NODES:
-        parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot (default: none)")
+        from . import namespaces  # imported here because the other commands do not need it
+        parser.add_argument("--namespace", default="", type=namespaces.valid, metavar="NS",
+                            help="namespace of the nodes of the robot (default: none)")
     module.add_arguments(parser)
     parser.set_defaults(run=module.run)
 
 
 def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"ur {command}")
+    parser.add_argument("--version", action=_ShowVersion, nargs=0, help=argparse.SUPPRESS)
     _add_arguments(command, parser)
     return parser.parse_intermixed_args(arguments)
 

@@ -1,8 +1,20 @@
-"""Finds the namespaces of drivers, for a command that was given the wrong one."""
+"""Namespaces: those that are valid, and those of drivers, for a command that was given the wrong one."""
 
+import argparse
+import re
 from typing import Any, List
 
+_NAME = "[A-Za-z_][A-Za-z0-9_]*"
 NODES = ("robot_state_receiver", "command_server", "dashboard_server")  # of a driver
+
+
+def valid(text: str) -> str:
+    """Returns the namespace without slashes at its ends. Raises argparse.ArgumentTypeError."""
+    namespace = text.strip("/")
+    if namespace and not re.fullmatch(rf"{_NAME}(/{_NAME})*", namespace):
+        raise argparse.ArgumentTypeError(f"\"{text}\" is no namespace: names of letters, digits and _ that begin with no digit, "
+                                         "separated by /")
+    return namespace
 
 
 def drivers(node: Any) -> List[str]:

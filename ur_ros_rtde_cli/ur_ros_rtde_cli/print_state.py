@@ -27,11 +27,23 @@ ENTER_SCREEN, LEAVE_SCREEN = "\x1b[?1049h\x1b[?25l", "\x1b[?25h\x1b[?1049l"
 HOME, REST_OF_LINE, REST_OF_SCREEN = "\x1b[H", "\x1b[K", "\x1b[J"
 
 TOPIC_COUNT = 9  # of subscribe()
+SILENT = 1.0  # s without joint states
 
 
-def subscribe(session: Session) -> Dict[str, Any]:
-    """Subscribes to all topics. Returns a dictionary that holds the latest message of each topic."""
-    latest: Dict[str, Any] = {}
+class Latest(Dict[str, Any]):
+    """The latest message of each topic."""
+
+    heard = math.inf  # s, of the monotonic clock, when joint_states came last
+
+    def take(self, topic: str, message: Any) -> None:
+        self[topic] = message
+        if topic == "joint_states":
+            self.heard = time.monotonic()
+
+
+def subscribe(session: Session) -> Latest:
+    """Subscribes to all topics."""
+    latest = Latest()
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     transient_local = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     for topic, kind, qos in (("joint_states", JointState, best_effort), ("tcp_pose", PoseStamped, best_effort),
@@ -39,11 +51,14 @@ def subscribe(session: Session) -> Dict[str, Any]:
                              ("safety_mode", SafetyMode, transient_local), ("speed_scaling", Float64, transient_local),
                              ("driver_state", DriverState, transient_local), ("joint_states_are_fake", Bool, transient_local),
                              ("active_modes", ActiveModes, transient_local)):
-        session.node.create_subscription(kind, topic, lambda message, topic=topic: latest.__setitem__(topic, message), qos)
+        session.node.create_subscription(kind, topic, lambda message, topic=topic: latest.take(topic, message), qos)
     return latest
 
 
-def state_lines(latest: Dict[str, Any]) -> Iterator[str]:
+def state_lines(latest: Latest) -> Iterator[str]:
+    silence = time.monotonic() - latest.heard
+    if silence > SILENT:
+        yield f"no joint_states for {silence:.0f} s: the driver has ended or has lost the robot. What follows is old."
     for topic in ("robot_mode", "safety_mode", "driver_state"):
         if topic in latest:
             message = latest[topic]
@@ -88,7 +103,7 @@ def print_state(session: Session, options: argparse.Namespace) -> int:
     return 0
 
 
-def _watch_on_screen(session: Session, latest: Dict[str, Any]) -> None:
+def _watch_on_screen(session: Session, latest: Latest) -> None:
     sys.stdout.write(ENTER_SCREEN)
     try:
         while True:

@@ -32,7 +32,7 @@ class Recording:
         try:
             with path.open(newline="") as file:
                 rows = _rows(file)
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is no text"
             raise CliError(f"{path} cannot be read: {reason}") from None
         header, rows = (_renamed(rows[0], names), rows[1:]) if rows else ([], [])
@@ -46,8 +46,15 @@ class Recording:
         columns = {header[index]: values[:, position] for position, index in enumerate(numbers)}
         times = np.arange(len(rows)) / rate if rate is not None else columns[TIME] - columns[TIME][0]
         columns.pop(TIME, None)
+        if not columns:
+            raise CliError(f"{path} has no output besides {TIME}: record with `ur record {path.name} {TIME} actual_q`")
         return cls(path.name, times, _outputs(columns), [] if events is None else
                    [(float(time), row[events]) for time, row in zip(times, rows) if row[events]])
+
+    def first_step_back(self) -> Optional[int]:
+        """Returns the first row whose time is earlier than that of the row before."""
+        backwards = np.flatnonzero(np.diff(self.times) < 0.0)
+        return int(backwards[0]) + 1 if backwards.size else None
 
     def select(self, names: Sequence[str]) -> "Recording":
         """Returns the recording with these outputs only; all if there are no names."""

@@ -28,7 +28,8 @@ _SERIAL_NUMBER = re.compile(r"\b20\d{9}\b")  # of a robot: the year of its produ
 
 def without_private_data(text: str) -> str:
     """Replaces the home folder, the names of user and host, and addresses and serial numbers, equal ones by equal words."""
-    text = text.replace(str(pathlib.Path.home()), "~")
+    home = str(pathlib.Path.home())
+    text = text.replace(home, "~") if home != "/" else text
     for name, word in ((socket.gethostname(), "<host>"), (_user(), "<user>")):
         if len(name) > 2 and name != "root":
             text = re.sub(rf"\b{re.escape(name)}\b", word, text)
@@ -143,7 +144,11 @@ def _logs() -> Iterator[str]:
         if not logs:
             continue
         found = True
-        lines = logs[-1].read_text(errors="replace").splitlines()
+        try:
+            lines = logs[-1].read_text(errors="replace").splitlines()
+        except OSError as error:
+            yield f"{logs[-1].name} cannot be read: {error.strerror}"
+            continue
         yield f"{logs[-1].name}, {len(lines)} lines:"
         yield from lines[-LOG_LINES:]
     if not found:

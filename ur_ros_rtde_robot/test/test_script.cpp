@@ -481,6 +481,26 @@ TEST_F(ScriptTest, IsNotSentForAGoalThatHasToEnd)
   EXPECT_EQ(robot->latest()->digital_outputs & 4U, 0U);
 }
 
+TEST_F(ScriptTest, IsEndedIfItBeginsLongAfterTheStop)
+{
+  make_both();
+  const double begin = robot->latest()->actual_q[0];
+  ScriptOptions options;
+  options.stop_reason = [this, calls = 0]() mutable -> std::optional<Error> {
+    if (calls++ > 0) {  // it was sent
+      return Error{ErrorCode::canceled, "canceled"};
+    }
+    controller.control(
+        {{"command", "delay_links"}, {"which", "primary"}, {"ms", 1000}});  // a long compilation
+    return std::nullopt;
+  };
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
+  EXPECT_TRUE(at_rest());
+  EXPECT_TRUE(is_back());
+  EXPECT_NEAR(robot->latest()->actual_q[0], begin, 0.05);
+}
+
 TEST_F(ScriptTest, DoesNotEndAGoalThatWaitsForTheArmSinceBeforeItsBegin)
 {
   make_both();

@@ -15,6 +15,9 @@ from ur_ros_rtde_viewer.control import action_forms, form_panel
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
 from ur_ros_rtde_viewer.control.goals import Goals, Phase
+from ur_ros_rtde_viewer.control.twin import Twin
+from ur_ros_rtde_viewer.page.sliders import within_limits
+from ur_ros_rtde_viewer.state.robot_state import RobotState
 from viser import GuiFolderHandle
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, MoveJ, MoveL, MoveLRelative
@@ -121,6 +124,24 @@ def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled():
     on_response(response)
     response.result.return_value.cancel_goal_async.assert_called_once()
     assert goal.phase == Phase.CANCELING and changes == [Phase.CANCELING]
+
+
+def test_the_digital_twin_of_a_silent_robot_ends_with_its_tab():
+    view, shown = MagicMock(), []
+    twin = Twin(view, MagicMock())
+    twin.begin("tab", lambda on, message: shown.append((on, message)))
+    twin._answered(SimpleNamespace(success=True), "")
+    twin.update(RobotState(joint_states_are_fake=True, age=0.0))
+    twin.update(RobotState(joint_states_are_fake=True, age=5.0))  # the connection to the robot was lost
+    assert shown == [(True, "")]
+    twin.end("tab")
+    assert view.services.call.call_args.kwargs == {"data": False} and shown[-1] == (False, "")
+
+
+def test_a_number_beside_a_slider_is_limited(server):
+    slider = server.gui.add_slider("Speed [m/s]", 0.01, 0.25, 0.01, 0.05)
+    for typed, used in ((2.5, 0.25), (-0.1, 0.01), (0.1, 0.1)):
+        assert within_limits(SimpleNamespace(value=typed, min=slider.min, max=slider.max)) == used
 
 
 @pytest.fixture

@@ -48,6 +48,13 @@ def test_a_missing_driver_a_silent_one_and_an_unknown_model_are_explained():
     assert banner(unknown, has_model=False, error='model is "ur99"') == (AMBER, 'left: model is "ur99"')
 
 
+def test_a_safety_stop_of_a_silent_robot_may_have_ended():
+    state = moving()
+    state.safety_mode, state.age = "PROTECTIVE_STOP", 4.0
+    (first, _), (second, text) = banners(state, "left", "/left/joint_states", True, "")
+    assert (first, second) == (RED, AMBER) and "no messages on /left/joint_states for 4 s" in text
+
+
 def test_a_stopped_driver_shows_its_message():
     state = moving()
     state.driver = DriverStatus("STOPPED", 10, "press play on the pendant")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.arguments import RobotOptions
 from ur_ros_rtde_viewer.errors import ViewerError
-from ur_ros_rtde_viewer.playback.motion import Motion, read_csv, read_plan
+from ur_ros_rtde_viewer.playback.motion import Motion, read_csv, read_file, read_plan
 from ur_ros_rtde_viewer.playback.player import Player
 from ur_ros_rtde_viewer.scene.robot_scene import RobotScene
 from ur_ros_rtde_viewer.state.robot_state import RobotState
@@ -49,6 +49,22 @@ def test_a_wrong_file_is_rejected_with_the_reason(content, message):
     with pytest.raises(ViewerError) as rejection:
         read_csv("run.csv", content)
     assert message in str(rejection.value)
+
+
+def test_a_file_that_cannot_be_shown_is_not_read(tmp_path, monkeypatch):
+    file = tmp_path / "night.csv"
+    with pytest.raises(ViewerError, match="night.csv cannot be read: No such file"):
+        read_file(file, lambda: False)
+    with file.open("wb") as content:
+        content.truncate(300_000_000)  # without blocks on the disk
+    monkeypatch.setattr(type(file), "read_bytes", lambda _: pytest.fail("it was read"))
+    with pytest.raises(ViewerError, match="night.csv has 300 MB"):
+        read_file(file, lambda: False)
+
+
+def test_reading_ends_with_the_page():
+    with pytest.raises(ViewerError, match="closed"):
+        read_csv("run.csv", table(row(0.0, 0.0), row(0.1, 0.0)), lambda: True)
 
 
 def test_reads_a_plan():

@@ -57,6 +57,8 @@ def test_a_tool_with_an_invalid_shape_is_rejected(tmp_path, capfd):
     (["--port", "70000"], "expected a port"),
     (["--rate", "0"], "1 to 60"),
     (["--token", ""], "8 or more letters"),
+    (["--namespace", "my-robot"], '"my-robot" is no namespace'),
+    (["--robot", "1left"], '"1left" is no namespace'),
 ])
 def test_wrong_arguments_are_rejected_with_the_value(arguments, message, capsys):
     with pytest.raises(SystemExit):
@@ -104,6 +106,8 @@ def test_the_page_is_served_and_never_shared_on_the_internet(server):
     ("127.0.0.1:8080", "http://127.0.0.1:9999", False),
     ("127.0.0.1:8080", "null", False),
     ("example.com:8080", "http://example.com:8080", False),  # a name that resolves to this machine
+    ("127.0.0.1:99999", None, False),
+    ("[::1", None, False),
     (None, None, False),
 ])
 def test_only_pages_of_the_server_are_accepted(host, origin, accepted):

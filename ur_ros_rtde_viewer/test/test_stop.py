@@ -137,4 +137,4 @@ def test_the_success_of_one_robot_does_not_hide_the_failure_of_another():
     control._outcomes, control._stop_text = {}, SimpleNamespace(content="")
     control._show_outcome("left: ", Outcome.FAILED, "no answer")
     control._show_outcome("right: ", Outcome.STOPPED, "0.2 s")
-    assert "left: STOP failed no answer" in control._stop_text.content and "right: Stopped. 0.2 s" in control._stop_text.content
+    assert "left: STOP failed: no answer" in control._stop_text.content and "right: Stopped. 0.2 s" in control._stop_text.content

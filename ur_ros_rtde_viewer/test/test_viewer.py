@@ -2,6 +2,8 @@
 
 import pathlib
 import time
+from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -12,8 +14,11 @@ from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel
+from ur_ros_rtde_viewer.playback.motion import read_csv
 from ur_ros_rtde_viewer.program import parse
+from ur_ros_rtde_viewer.ros.active_goal import ActiveGoalTopic
 from ur_ros_rtde_viewer.ros.nodes import Nodes
+from ur_ros_rtde_viewer.state.robot_state import ActiveGoal
 from ur_ros_rtde_viewer.viewer import Viewer
 
 from ur_ros_rtde_msgs.action import MoveJ
@@ -163,10 +168,11 @@ def test_records_and_replays(viewer, robot):
     update_until(viewer, lambda: file.is_file() and file.stat().st_size > 10000, "rows in the file")
     recording.toggle()
     update_until(viewer, lambda: not recording.is_recording, "the end of the recording")
-    assert recording._download.visible and replay.player.playing
+    update_until(viewer, lambda: replay.player.playing, "the replay")
+    assert recording._download.visible
     assert replay.player.arm.positions == pytest.approx(robot.scene.arm.positions, abs=0.01)
-    replay.replay("wrong.csv", b"a,b\n")
-    assert "wrong.csv has no columns actual_q_0" in replay.message.content
+    replay.replay("wrong.csv", lambda ended: read_csv("wrong.csv", b"a,b\n", ended))
+    update_until(viewer, lambda: "wrong.csv has no columns actual_q_0" in replay.message.content, "the reason")
     replay.player.remove()
 
 
@@ -207,6 +213,22 @@ def test_posted_functions_run_in_the_loop_and_a_failing_one_is_logged(viewer, ca
     viewer.post(lambda: called.append(True))
     viewer.step()
     assert called and "ZeroDivisionError" in caplog.text
+
+
+def test_an_error_of_a_panel_is_logged_once_and_the_page_goes_on(viewer, robot, caplog, monkeypatch):
+    monkeypatch.setattr(robot, "update", lambda: 1 / 0)
+    for _ in range(3):
+        viewer.step()
+    assert caplog.text.count("ZeroDivisionError: ") == 1
+
+
+def test_a_goal_of_a_package_that_is_not_in_this_workspace_has_no_progress(viewer):
+    nodes = SimpleNamespace(node=MagicMock())
+    nodes.node.get_topic_names_and_types.return_value = [("/wag/_action/feedback", ["my_commands/action/Wag_FeedbackMessage"])]
+    topic = ActiveGoalTopic(nodes, "/")
+    topic.on_holder("/wag, goal 51b26db5")
+    assert topic.goal == ActiveGoal("wag", 0.0, 0.0)
+    nodes.node.create_subscription.assert_not_called()
 
 
 def test_a_restart_of_the_driver_is_shown_and_survived(viewer, robot, simulator, driver):

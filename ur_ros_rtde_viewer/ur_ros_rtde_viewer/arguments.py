@@ -1,10 +1,12 @@
-"""Arguments of the viewer. Depends on the standard library alone, so that --help needs nothing else."""
+"""Arguments of the viewer. Imports nothing that --help does not need."""
 
 import argparse
 import math
 import re
 from dataclasses import dataclass
-from typing import Optional, Sequence, Tuple
+from typing import Any, Optional, Sequence, Tuple
+
+from ur_ros_rtde_cli.namespaces import valid
 
 DEFAULT_PORT = 8080
 DEFAULT_RATE = 30.0  # Hz
@@ -49,7 +51,7 @@ def parse_robot(text: str) -> RobotOptions:
         values[key] = value
     x, y, z, roll, pitch, yaw = (_number(text, key, values.get(key, "0")) for key in _POSE_FIELDS)
     length = _number(text, "tool_length", values["tool_length"]) if "tool_length" in values else None
-    return RobotOptions(namespace.strip("/"), values.get("model", ""), (x, y, z), (roll, pitch, yaw),
+    return RobotOptions(valid(namespace), values.get("model", ""), (x, y, z), (roll, pitch, yaw),
                         values.get("kinematics_params_file", ""), values.get("tool", ""), length)
 
 
@@ -85,11 +87,19 @@ def _rate(text: str) -> float:
     return rate
 
 
+class _ShowVersion(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from ur_ros_rtde_cli.version import version_line  # imported here because nothing else needs it
+        print(version_line())
+        parser.exit()
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--robot", action="append", type=parse_robot, default=[], metavar="NS[,model=M][,x=…]",
                         help="robot with this namespace; model, position (x, y, z in m) and orientation (roll, pitch, yaw in rad) of "
                              "its base_link, kinematics_params_file, tool and tool_length are optional; can be given several times")
-    parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the only robot (default: none)")
+    parser.add_argument("--version", action=_ShowVersion, nargs=0, help="show the version of the driver")
+    parser.add_argument("--namespace", default="", type=valid, metavar="NS", help="namespace of the only robot (default: none)")
     parser.add_argument("--model", default="", metavar="MODEL", help="model of the only robot (default: reported by the driver)")
     parser.add_argument("--kinematics-params-file", default="", metavar="FILE", help="calibration of the only robot, of `ur calibration`")
     parser.add_argument("--tool", default="", metavar="FILE", help="tool of the only robot, a URDF, of which cylinders, boxes and spheres "
@@ -113,7 +123,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def robots(options: argparse.Namespace) -> Sequence[RobotOptions]:
     """Returns the robots of the scene. Raises ValueError if a namespace appears twice or options contradict each other."""
     if not options.robot:
-        return (RobotOptions(options.namespace.strip("/"), options.model, kinematics_params_file=options.kinematics_params_file,
+        return (RobotOptions(options.namespace, options.model, kinematics_params_file=options.kinematics_params_file,
                              tool=options.tool, tool_length=options.tool_length),)
     for name in ("namespace", "model", "kinematics_params_file", "tool", "tool_length"):
         if getattr(options, name):

@@ -25,6 +25,7 @@ class Viewer:
     def __init__(self, server: Any, nodes: Nodes, options: argparse.Namespace):
         self.server, self.nodes, self.options = server, nodes, options
         self._posted: "queue.SimpleQueue[Callable[[], None]]" = queue.SimpleQueue()
+        self._last_error = ""
         with server.atomic():
             server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5)
             server.initial_camera.position, server.initial_camera.look_at = CAMERA
@@ -56,23 +57,29 @@ class Viewer:
     def step(self) -> None:
         """Updates the page, then runs callbacks until the next update is due."""
         due = time.monotonic() + 1.0 / self.options.rate
-        self.update()
+        self._call(self.update)
         self._spin_until(due)
 
     def _spin_until(self, due: float) -> None:
         """Runs callbacks of ROS and posted functions."""
         self.run_posted()
         while (remaining := due - time.monotonic()) > 0.0:
-            self.nodes.spin_once(remaining)
+            self._call(lambda: self.nodes.spin_once(remaining))
             self.run_posted()
+
+    def _call(self, function: Callable[[], None]) -> None:
+        """An error must not end the viewer, and STOP with it. One that repeats itself is logged once."""
+        try:
+            function()
+        except Exception as error:
+            text = f"{type(error).__name__}: {error}"
+            if text != self._last_error:
+                self._last_error = text
+                logger.exception("a part of the page failed")
 
     def run_posted(self) -> None:
         while not self._posted.empty():
-            function = self._posted.get()
-            try:
-                function()
-            except Exception:  # a failing callback must not end the viewer
-                logger.exception("a callback of the page failed")
+            self._call(self._posted.get())
 
     def update(self) -> None:
         with self.server.atomic():

@@ -86,6 +86,10 @@ class CommandHost : public PluginHost {
   bool has_startup_requests() const { return startup_requests_.may_take_effect(); }
   /// Waits for them, but at most 3.5 s.
   void wait_for_startup_requests();
+  /// For a goal that may switch a mode which outlasts it, until the returned object is destroyed.
+  std::shared_ptr<void> begin_mode_switch();
+  /// Number of their begins and ends. Goals that see it change leave the modes on when they succeed.
+  std::uint32_t mode_switches() const { return mode_switches_; }
   /// The client of this goal keeps the modes on that outlast their goal: end_modes_of() stops the arm.
   /// Replaces the goal before; null: no client does.
   void set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal);
@@ -104,6 +108,7 @@ class CommandHost : public PluginHost {
   Options options_;
   std::atomic<std::uint32_t> stops_ = 0;
   StartupRequests startup_requests_;
+  std::atomic<std::uint32_t> mode_switches_ = 0;
   std::mutex mode_owner_mutex_;
   std::shared_ptr<rcl_cxx::ServerGoalHandle> mode_owner_;
   mutable std::mutex commands_mutex_;

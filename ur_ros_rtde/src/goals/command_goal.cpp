@@ -302,6 +302,9 @@ Outcome CommandGoal::execute()
       return acquired;
     }
     command_->host.forget_owner_of_ended_modes();
+    mode_switches_ = command_->host.mode_switches();
+    const auto mode_switch =
+        command_->traits.leaves_mode_active ? command_->host.begin_mode_switch() : nullptr;
     {
       const std::lock_guard lock(lease_mutex_);
       active_before_ = robot().activities() & outlasting_modes;
@@ -369,8 +372,9 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   }
   StopOptions options = stop_options_;
   if (outcome) {
-    options.keep = active_before_.value_or(Activities()) |
-                   (command_->traits.leaves_mode_active ? outlasting_modes : Activities());
+    const bool leaves_modes =
+        command_->traits.leaves_mode_active || command_->host.mode_switches() != mode_switches_;
+    options.keep = active_before_.value_or(Activities()) | (leaves_modes ? outlasting_modes : Activities());
     if (!stop_request().reason() && robot().is_at_rest_except(options.keep)) {
       return outcome;
     }

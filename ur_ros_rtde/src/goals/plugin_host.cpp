@@ -82,6 +82,12 @@ Expected<std::shared_ptr<void>> DashboardHost::begin_startup_request(std::uint32
                  : tl::unexpected(stopped_by_the_driver());
 }
 
+std::shared_ptr<void> CommandHost::begin_mode_switch()
+{
+  ++mode_switches_;
+  return {nullptr, [this](void *) { ++mode_switches_; }};
+}
+
 void CommandHost::set_mode_owner(std::shared_ptr<rcl_cxx::ServerGoalHandle> goal)
 {
   const std::lock_guard lock(mode_owner_mutex_);

@@ -16,6 +16,8 @@ class Connection:
         self._received = b""
         try:
             self.socket = socket.create_connection((address, port), limit)
+        except UnicodeError:  # "192.168.56..101"
+            raise ConnectionFailure(f"{address} is no address") from None
         except OSError as error:
             raise ConnectionFailure(f"port {port}: {error.strerror or 'no answer'}") from None
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -106,6 +106,16 @@ def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simula
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
+def test_force_mode_that_is_started_during_a_motion_outlasts_it(robot, simulator):
+    motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.5), speed=0.3)
+    wait_until_moving(robot)
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    motion.succeeded()
+    assert simulator.state()["force_mode"], "the motion has ended the mode of another goal"
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+
+
 def test_a_velocity_ends_while_force_mode_goes_on_moving_the_arm(robot, simulator):
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(2.0), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()

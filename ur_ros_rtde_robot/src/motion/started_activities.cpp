@@ -83,7 +83,7 @@ StartedActivities::Script::Script(StartedActivities & activities, std::function<
 {
   const std::lock_guard lock(activities_.mutex_);
   activities_.fence_ = std::move(fence);
-  activities_.script_begun_ = false;
+  activities_.script_compiled_ = false;
 }
 
 StartedActivities::Script::~Script()

@@ -38,14 +38,14 @@ class StartedActivities {
     ~Script();
     Script(const Script &) = delete;
     Script & operator=(const Script &) = delete;
-    /// The controller has begun to execute it.
-    void set_begun() { activities_.script_begun_ = true; }
+    /// The controller has begun to execute it, or never will.
+    void set_compiled() { activities_.script_compiled_ = true; }
 
    private:
     StartedActivities & activities_;
   };
   void fence_script() const;
-  bool script_begun() const { return script_begun_; }
+  bool script_compiled() const { return script_compiled_; }
 
  private:
   /// Activity::call, if there is one.
@@ -57,7 +57,7 @@ class StartedActivities {
   mutable std::mutex mutex_;
   std::list<std::shared_ptr<const Permit>> calls_;
   std::function<void()> fence_;  ///< empty: no script
-  std::atomic<bool> script_begun_ = false;
+  std::atomic<bool> script_compiled_ = false;
 };
 
 }  // namespace ur_ros_rtde

@@ -27,8 +27,8 @@ constexpr double stop_cycles = 5;
 constexpr double mode_end_timeout = 0.5;
 /// From the acknowledgement of a stop to the sample that shows its beginning.
 constexpr double begin_timeout = 0.04;
-/// From the arrival of a script at the controller to its beginning.
-constexpr double compile_timeout = 0.5;
+/// s of the controller, until a script that was sent begins: the limit of ScriptMonitor.
+constexpr double compile_timeout = 3.0;
 /// The samples reflect commands with a delay of some cycles.
 constexpr std::uint64_t sample_delay = 5;
 
@@ -241,17 +241,11 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 {
   const auto before = tracker_.view();
   activities_.fence_script();
-  Status stopped = stop_program(options_.address);
-  // The controller may still be compiling a script.
-  const auto has_script = [this] { return activities_.now().contains(Activity::script); };
-  while (stopped && has_script() && !activities_.script_begun() &&
-         wait_for(compile_timeout,
-                  [&](const Sample & sample) { return sample.is_program_running() || !has_script(); }) &&
-         has_script()) {
-    stopped = stop_program(options_.address);
-  }
-  if (!stopped) {
-    return stopped;
+  const bool may_begin =
+      !before.program_running && activities_.now().contains(Activity::script);  // a script, after the stop
+  const Status ended = may_begin ? stop_script(before) : stop_program(options_.address);
+  if (!ended) {
+    return ended;
   }
   if (before.program_running) {
     if (Status seen = wait_for_program_end(before.program, program_stop_timeout); !seen) {
@@ -261,6 +255,33 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
+}
+
+/// A stop ends nothing while the controller still compiles a script, which begins afterwards. `before`: no
+/// program ran.
+Status MotionStopper::stop_script(const MotionTracker::View & before)
+{
+  const auto has_script = [this] { return activities_.now().contains(Activity::script); };
+  const bool begun = activities_.script_compiled();
+  const auto begins = [&](const Sample &) {
+    const auto view = tracker_.view();
+    return view.program_running || view.program != before.program || activities_.script_compiled() ||
+           !has_script();
+  };
+  Status stopped = stop_program(options_.address);
+  if (stopped && !begun && has_script() && wait_for(compile_timeout, begins) && has_script()) {
+    stopped = stop_program(options_.address);
+  }
+  if (!stopped) {
+    return stopped;
+  }
+  const std::uint64_t sequence = tracker_.view().sequence + sample_delay;
+  const bool ended = wait_for(program_stop_timeout, [&](const Sample &) {
+    const auto view = tracker_.view();
+    return view.sequence >= sequence && !view.program_running;
+  });
+  ended_programs_ += tracker_.view().program != before.program ? 1 : 0;
+  return ended ? Status() : failure(ErrorCode::timeout, "the script was stopped, but has not ended");
 }
 
 Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout)

@@ -73,6 +73,7 @@ class Goals:
         self._clients: Dict[str, ActionClient] = {}
         self._reasons: Dict[bytes, str] = {}
         self._open: List[SentGoal] = []  # without a result
+        self._open_lock = threading.Lock()  # goals are sent by the threads of the page
         control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
@@ -93,7 +94,8 @@ class Goals:
     def send(self, name: str, action: Any, goal: Any, on_change: Callable[[SentGoal], None]) -> SentGoal:
         """Sends a goal. `on_change` is called in the thread of the node."""
         sent = SentGoal(self.full_name(name), on_change)
-        self._open = [goal for goal in self._open if not goal.has_ended] + [sent]
+        with self._open_lock:
+            self._open = [goal for goal in self._open if not goal.has_ended] + [sent]
         self._control.post(lambda: self._send_when_ready(name, action, goal, sent))
         return sent
 

@@ -3,6 +3,7 @@
 from typing import Any, Hashable
 
 from ..page import style
+from ..page.sliders import within_limits
 from .jog import AXES, HOLD_RATE, MAX_ANGULAR, MAX_LINEAR, Frame, JogSpeed
 from .robot_control import RobotControl
 
@@ -35,13 +36,14 @@ class JogPanel:
 
         async def hold(_event: Any) -> None:  # coroutines are called in the order of the messages
             reason = self._jog.hold(self._tab, axis, sign, FRAMES[self._frame.value],
-                                    JogSpeed(self._linear.value, self._angular.value))
+                                    JogSpeed(within_limits(self._linear), within_limits(self._angular)))
             text = reason or ""
             if self._text.content != text:
                 self._text.content = text
 
         async def release(_event: Any) -> None:
             self._jog.release(self._tab, axis, sign)
+            self._text.content = ""
 
         button.on_hold(hold, callback_hz=HOLD_RATE)
         button.on_click(release)

@@ -1,5 +1,6 @@
 """Records RTDE outputs of the robot to a CSV file, offers it for download, and replays it in the scene."""
 
+import os
 import pathlib
 import time
 from typing import Any, Callable, Optional
@@ -7,6 +8,7 @@ from typing import Any, Callable, Optional
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 from ..panels.replay_panel import ReplayPanel
+from ..playback.motion import read_file
 from ..ros.service_call import ServiceCaller
 from ..state.robot_state import RobotState
 
@@ -53,9 +55,10 @@ class RecordingPanel:
         lost = f", {response.lost} lost" if response.lost else ""
         self._message.content = f"`{response.filename}`: {response.rows} rows{lost}"
         self._file = pathlib.Path(response.filename)
-        self._download.visible = self._file.is_file()
-        if self._download.visible:
-            self._replay.replay(self._file.name, self._file.read_bytes())
+        self._download.visible = file_is_here = os.access(self._file, os.R_OK)
+        if file_is_here:
+            file = self._file
+            self._replay.replay(file.name, lambda ended: read_file(file, ended))
 
     def _show_state(self, recording: bool) -> None:
         self.is_recording = recording

@@ -27,7 +27,7 @@ class Outcome(Enum):
     STOPPING = "The arm decelerates."
     STOPPED = "Stopped."
     PROGRAM = "The robot program is being stopped through dashboard_server:"
-    FAILED = "STOP failed"
+    FAILED = "STOP failed:"
 
 
 Report = Callable[[Outcome, str], None]

@@ -7,6 +7,7 @@ import numpy as np
 from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.tree import link_poses
 
+from ..page.sliders import within_limits
 from ..scene.arm import Arm
 from ..scene.urdf import read_description
 from .goal_view import GoalView, escaped
@@ -17,6 +18,7 @@ from .target_pose import Motion, Plan, Planner, PoseTarget
 GHOST_COLOR, GHOST_OPACITY = (60, 180, 90), 0.35
 PATH_COLOR = (60, 180, 90)
 GIZMO_SCALE = 0.25  # m
+NO_TARGET = "*Execute* needs a target: show it."
 NO_PLAN = "*Execute* needs a motion: drag the target."
 
 
@@ -38,7 +40,7 @@ class TargetPanel:
             self._speed = gui.add_slider("Speed [% of the default]", 10, 200, 10, 100)
             self._preview = gui.add_slider("Preview [%]", 0, 100, 1, 100, disabled=True)
             self._execute = gui.add_button("Execute", color="green", disabled=True)
-            self._text = gui.add_markdown("")
+            self._text = gui.add_markdown(NO_TARGET)
             self._goals_folder = gui.add_folder("Goal", visible=False)
         self._shown.on_update(lambda _event: self._show() if self._shown.value else self._hide())
         self._motion.on_update(lambda _event: self._solve())
@@ -77,7 +79,7 @@ class TargetPanel:
 
     def _hide(self) -> None:
         self._forget_plan()
-        self._say("")
+        self._say(NO_TARGET)
         for part in (self._arm, self._gizmo):
             if part is not None:
                 part.remove()
@@ -166,7 +168,7 @@ class TargetPanel:
         self._execute.disabled = True
         self._goals_folder.visible = True
         self._goal = GoalView(self._client.gui, self._goals_folder, self._robot.goals, plan.name, plan.action,
-                              plan.goal(0.01 * self._speed.value), self._on_end)
+                              plan.goal(0.01 * within_limits(self._speed)), self._on_end)
 
     def _on_end(self, _goal: SentGoal) -> None:
         if not self._closed:

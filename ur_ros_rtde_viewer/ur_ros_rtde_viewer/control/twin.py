@@ -50,10 +50,11 @@ class Twin:
             self._publisher.publish(JointState(name=list(self._topics.joint_names), position=positions))
 
     def update(self, state: RobotState) -> None:
-        """Notices that the driver has ended, or that another program has ended the mode."""
+        """Notices that another program has ended the mode, or that the driver was started anew. While the robot is silent, the driver
+        keeps the mode, so the tab keeps it as well."""
         if self._owner is None:
             return
-        if self._confirmed and (not state.joint_states_are_fake or state.is_silent):
+        if self._confirmed and not state.joint_states_are_fake:
             self._forget("The digital twin has ended: the driver or another program has ended it.")
         self._confirmed |= state.joint_states_are_fake
 

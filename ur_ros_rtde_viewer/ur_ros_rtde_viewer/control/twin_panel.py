@@ -5,6 +5,7 @@ from typing import Any, Callable, Hashable
 
 from ur_ros_rtde_description.models import JOINTS
 
+from ..page.sliders import within_limits
 from .robot_control import RobotControl
 
 INTRODUCTION = ("Sets the positions in `joint_states` for the programs that read them. The robot does not move. The real positions stay "
@@ -45,9 +46,9 @@ class TwinPanel:
                 slider.value = float(positions[index])
 
     def publish(self) -> None:
-        """Sends the positions of the sliders. The number beside a slider can be outside its range."""
+        """Sends the positions of the sliders."""
         for slider in self.sliders:
-            limited = min(max(slider.value, slider.min), slider.max)
+            limited = within_limits(slider)
             if limited != slider.value:
                 slider.value = limited
         self._robot.twin.publish(self._tab, [float(slider.value) for slider in self.sliders])

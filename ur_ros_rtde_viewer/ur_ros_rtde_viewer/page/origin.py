@@ -33,7 +33,11 @@ def _names_of_this_machine() -> FrozenSet[str]:
 
 
 def _is_own_name(host: str) -> bool:
-    name = urlsplit(f"//{host}").hostname or ""
+    try:
+        parts = urlsplit(f"//{host}")
+        name, _ = parts.hostname or "", parts.port  # ValueError: no host, or no port
+    except ValueError:
+        return False
     try:
         ipaddress.ip_address(name)
         return True

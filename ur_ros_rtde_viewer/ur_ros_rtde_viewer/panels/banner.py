@@ -12,6 +12,8 @@ def banners(state: RobotState, name: str, topic: str, has_model: bool, error: st
     """Returns colors and texts. `error`: why the model cannot be shown."""
     first = _most_important(state, name, topic, has_model, error)
     found = [] if first is None else [first]
+    if state.is_stopped and state.joints is not None and state.is_silent:  # the stop may have ended since
+        found.append(_silence(state, name, topic))
     if state.joint_states_are_fake:  # also while the robot is stopped
         found.append((AMBER, f"{name}: {topic} has fake positions (digital twin). The blue ghost shows the robot."))
     return found
@@ -28,7 +30,7 @@ def _most_important(state: RobotState, name: str, topic: str, has_model: bool, e
         return AMBER, (f"{name}: no messages on {topic}. Start the driver (`ros2 launch ur_ros_rtde driver.launch.py` or `./ur demo "
                        "--keep-running`) with the same ROS_DOMAIN_ID and namespace.")
     if state.is_silent:
-        return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
+        return _silence(state, name, topic)
     if state.active_modes:
         return AMBER, f"{name}: {' and '.join(state.active_modes).replace('_', ' ')} active: forces move the arm. STOP ends it."
     if not has_model:
@@ -36,6 +38,10 @@ def _most_important(state: RobotState, name: str, topic: str, has_model: bool, e
     if state.driver is not None and state.driver.name == "STOPPED":
         return AMBER, f"{name}: {state.driver.message}"
     return None
+
+
+def _silence(state: RobotState, name: str, topic: str) -> Tuple[str, str]:
+    return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
 
 
 class Banner:

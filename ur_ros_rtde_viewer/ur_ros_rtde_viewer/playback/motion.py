@@ -4,8 +4,9 @@ import csv
 import io
 import json
 import math
+import pathlib
 from dataclasses import dataclass
-from typing import Iterator, List, Sequence
+from typing import Callable, Iterable, Iterator, List, Sequence
 
 import numpy as np
 
@@ -46,21 +47,46 @@ def _motion(name: str, times: np.ndarray, positions: np.ndarray) -> Motion:
     return Motion(name, times - times[0], positions)
 
 
-def read_csv(name: str, content: bytes) -> Motion:
-    """Reads a recording with timestamp and actual_q or target_q. Raises ViewerError with the line, the value and the remedy."""
-    if len(content) > MAX_BYTES:
-        raise ViewerError(f"{name} has {len(content) / 1e6:.0f} MB: at most {MAX_BYTES / 1e6:.0f} MB are shown; record with --frequency")
+def read_file(path: pathlib.Path, ended: Callable[[], bool]) -> Motion:
+    """As read_csv()."""
+    try:
+        _check_size(path.name, path.stat().st_size)
+        content = path.read_bytes()
+    except OSError as error:
+        raise ViewerError(f"{path} cannot be read: {error.strerror}") from None
+    return read_csv(path.name, content, ended)
+
+
+def read_csv(name: str, content: bytes, ended: Callable[[], bool] = lambda: False) -> Motion:
+    """Reads a recording with timestamp and actual_q or target_q. Raises ViewerError with the line, the value and the remedy, or after
+    `ended()`."""
+    _check_size(name, len(content))
     try:
         rows = csv.reader(io.StringIO(content.decode("utf-8"), newline=""))
         header = next(rows, [])
+        columns = _columns(name, header)
+        if "timestamp" in header:
+            columns.append(header.index("timestamp"))
+        numbers = list(_numbers(name, _until(ended, rows), columns, len(header)))
     except UnicodeDecodeError:
         raise ViewerError(f"{name} is no text: expected a CSV file of `ur record`") from None
-    columns = _columns(name, header)
-    if "timestamp" in header:
-        columns.append(header.index("timestamp"))
-    data = np.array(list(_numbers(name, rows, columns, len(header)))).reshape(-1, len(columns))
+    except csv.Error as error:
+        raise ViewerError(f"{name} is no CSV file: {error}") from None
+    data = np.array(numbers).reshape(-1, len(columns))
     times = data[:, JOINT_COUNT] if "timestamp" in header else np.arange(len(data)) / FRAME_RATE
     return _motion(name, times, data[:, :JOINT_COUNT])
+
+
+def _check_size(name: str, size: int) -> None:
+    if size > MAX_BYTES:
+        raise ViewerError(f"{name} has {size / 1e6:.0f} MB: at most {MAX_BYTES / 1e6:.0f} MB are shown; record with --frequency")
+
+
+def _until(ended: Callable[[], bool], rows: Iterable[List[str]]) -> Iterator[List[str]]:
+    for row in rows:
+        if ended():
+            raise ViewerError("the page was closed")
+        yield row
 
 
 def _columns(name: str, header: Sequence[str]) -> List[int]:

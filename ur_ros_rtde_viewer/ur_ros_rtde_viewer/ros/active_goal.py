@@ -44,9 +44,10 @@ class ActiveGoalTopic:
     def _subscribe(self, action: str) -> None:
         topic = f"{self._prefix}{action}{FEEDBACK_TOPIC}"
         types = None if action in self._subscriptions else dict(self._node.get_topic_names_and_types()).get(topic)
-        if types:
+        kind = _feedback_type(types[0]) if types else None
+        if kind is not None:
             self._subscriptions[action] = self._node.create_subscription(
-                _feedback_type(types[0]), topic, lambda message: self._on_feedback(action, message), QoSProfile(depth=1))
+                kind, topic, lambda message: self._on_feedback(action, message), QoSProfile(depth=1))
 
     def _on_feedback(self, action: str, message: Any) -> None:
         motion = getattr(message.feedback, "motion", None)
@@ -60,6 +61,10 @@ class ActiveGoalTopic:
 
 
 def _feedback_type(name: str) -> Any:
-    """Returns the message class of "ur_ros_rtde_msgs/action/MoveJ_FeedbackMessage"."""
+    """Returns the message class of "ur_ros_rtde_msgs/action/MoveJ_FeedbackMessage", None if its package is not in this workspace."""
     package, _, kind = name.split("/")
-    return getattr(importlib.import_module(f"{package}.action"), kind.removesuffix(FEEDBACK_TYPE)).Impl.FeedbackMessage
+    try:
+        module = importlib.import_module(f"{package}.action")
+    except ImportError:
+        return None
+    return getattr(module, kind.removesuffix(FEEDBACK_TYPE)).Impl.FeedbackMessage

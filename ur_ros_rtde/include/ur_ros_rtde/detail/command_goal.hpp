@@ -96,6 +96,7 @@ class CommandGoal : public Goal {
   StopOptions stop_options_;  ///< of the command that runs: this one, or one that it calls
   /// Modes that previous goals have left active. Empty: the command has not begun.
   std::optional<Activities> active_before_;
+  std::uint32_t mode_switches_ = 0;  ///< CommandHost::mode_switches() of that time
 };
 
 }  // namespace ur_ros_rtde

@@ -168,7 +168,7 @@ void ScriptMonitor::on_text(const std::string & text)
 {
   if (text == markers_.begin) {
     begin_seen_ = Clock::now();
-    on_begin();
+    on_compiled();
   } else if (text == markers_.end) {
     end_seen_ = Clock::now();
   } else if (begin_seen_ && !end_seen_) {
@@ -192,6 +192,7 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
           (options_.kind == ScriptKind::secondary || !is_from_secondary_program(message.text))) {
         error_seen_ = Clock::now();
         error_ = message;
+        on_compiled();
       }
       break;
     case PrimaryMessage::Kind::error_code:
@@ -208,7 +209,10 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_stopped:
-      ended_before_begin_ |= started_ && !begin_seen_ && message.text == program_->name;
+      if (started_ && !begin_seen_ && message.text == program_->name) {
+        ended_before_begin_ = true;
+        on_compiled();
+      }
       break;
   }
 }
@@ -304,6 +308,19 @@ bool ScriptMonitor::complete_if_it_must_stop()
     }
   }
   return complete_if_told(ScriptEnd::interrupted) || complete_if_late();
+}
+
+void ScriptMonitor::read_until_compiled(const std::function<bool()> & ends)
+{
+  while (!begin_seen_ && !error_seen_ && !ended_before_begin_ && !ends()) {
+    const auto message = primary_.next(message_wait);
+    if (!message) {
+      return;
+    }
+    if (*message) {
+      on_message(**message);
+    }
+  }
 }
 
 /// A safety stop pauses the program, too, and is told by its own bits. The program may have been paused

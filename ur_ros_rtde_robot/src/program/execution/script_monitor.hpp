@@ -26,12 +26,15 @@ class ScriptMonitor {
   ScriptMonitor(PrimaryConnection primary, const StateReceiver & state, Markers markers,
                 const ScriptOptions & options);
 
-  /// Called when the controller has begun to execute the script.
-  std::function<void()> on_begin = [] {};
+  /// Called when the controller has begun to execute the script, or will not begin: a stop has not to wait
+  /// for it any longer.
+  std::function<void()> on_compiled = [] {};
   /// Makes it impossible to send the script. May be called by another thread.
   void fence() const { primary_.shut_down_sending(); }
   /// Sends the program and waits until it has ended or has to be stopped; see may_be_running().
   void run(const script::Program & program);
+  /// After run(): reads on until on_compiled() was called, or `ends`.
+  void read_until_compiled(const std::function<bool()> & ends);
   /// True if the program may still be running on the controller and has to be stopped.
   bool may_be_running() const { return may_be_running_; }
   /// True if another program has replaced this one.

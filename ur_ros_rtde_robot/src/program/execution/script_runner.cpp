@@ -174,7 +174,7 @@ ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Progra
                                            ScriptMonitor & monitor)
 {
   StartedActivities::Script activity(activities_, [&monitor] { monitor.fence(); });
-  monitor.on_begin = [&activity] { activity.set_begun(); };
+  monitor.on_compiled = [&activity] { activity.set_compiled(); };
   if (auto why = holder.revoked()) {  // a later stop finds the activity
     return rejected(*std::move(why));
   }
@@ -186,7 +186,10 @@ ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Progra
   }
   ScriptReport report = monitor.report();
   if (monitor.may_be_running()) {
-    if (const auto stopped = stopper_.end(holder, {}).get(); !stopped) {
+    const auto stop = stopper_.end(holder, {});
+    // The stop waits for a script that the controller still compiles.
+    monitor.read_until_compiled([&] { return stop.wait_for(milliseconds(0)) == std::future_status::ready; });
+    if (const auto stopped = stop.get(); !stopped) {
       report.error.message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
     }
   }
