@@ -485,18 +485,21 @@ TEST_F(ScriptTest, IsEndedIfItBeginsLongAfterTheStop)
 {
   make_both();
   const double begin = robot->latest()->actual_q[0];
+  const auto compile_in = [this](double seconds) {
+    controller.control({{"command", "compile_time"}, {"seconds", seconds}});
+  };
   ScriptOptions options;
-  options.stop_reason = [this, calls = 0]() mutable -> std::optional<Error> {
+  options.stop_reason = [calls = 0, &compile_in]() mutable -> std::optional<Error> {
     if (calls++ > 0) {  // it was sent
       return Error{ErrorCode::canceled, "canceled"};
     }
-    controller.control(
-        {{"command", "delay_links"}, {"which", "primary"}, {"ms", 1000}});  // a long compilation
+    compile_in(1.0);
     return std::nullopt;
   };
   const auto report = run_script(turning(), options);
   EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
   EXPECT_TRUE(at_rest());
+  compile_in(0.0);
   EXPECT_TRUE(is_back());
   EXPECT_NEAR(robot->latest()->actual_q[0], begin, 0.05);
 }

@@ -194,6 +194,15 @@ Action speed_slider(RequestFields & fields)
   };
 }
 
+Action compile_time(RequestFields & fields)
+{
+  const double seconds = fields.number("seconds", {0.0, 60.0});
+  return [=](ControlPortContext & context) -> json {
+    context.pendant.set_compile_time(seconds);
+    return json::object();
+  };
+}
+
 Action close_popup(RequestFields &)
 {
   return [](ControlPortContext & context) -> json {
@@ -271,6 +280,8 @@ constexpr std::array robot_command_table{
     Command{"kill_program", "", "Ends the program within one control cycle, without a log entry or message.",
             kill_program},
     Command{"speed_slider", "fraction 0..1", "Sets the speed slider of the pendant.", speed_slider},
+    Command{"compile_time", "seconds 0..60", "Lets scripts of the client interfaces begin after this time.",
+            compile_time},
     Command{"close_popup", "", "Closes the open popup.", close_popup},
     Command{"answer_request", "value bool|number|string",
             "Enters the value that the program requests from the operator.", answer_request},

@@ -140,13 +140,17 @@ Pendant::Result Pendant::start(std::string_view script)
   return start(std::move(*program), script);
 }
 
-Pendant::Result Pendant::start(urscript::Program program, std::string_view script)
+Pendant::Result Pendant::start(urscript::Program program, std::string_view script, double delay)
 {
   const bool secondary = program.is_secondary();
   if (Result can_run = check_can_run(); !secondary && !can_run) {
     return can_run;
   }
-  runner_.start(std::move(program));
+  if (delay > 0.0) {
+    runner_.start_later(std::move(program), delay);
+  } else {
+    runner_.start(std::move(program));
+  }
   if (!secondary) {
     last_script_ = script;
   }
@@ -171,7 +175,7 @@ Pendant::Result Pendant::run_script(std::string_view text)
     log_compile_error(program.error());
     return rejection(program.error().text());
   }
-  Result started = start(std::move(*program), text);
+  Result started = start(std::move(*program), text, compile_time_);
   return started ? started : reject_script(std::move(started));
 }
 

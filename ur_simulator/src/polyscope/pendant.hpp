@@ -48,6 +48,8 @@ class Pendant {
   /// Runs a script received on a client interface, which replaces the running program, or executes a
   /// controller command such as `power on`.
   Result run_script(std::string_view text);
+  /// How long the compilation of such a script takes, s. It begins afterwards. 0: at once.
+  void set_compile_time(double time) { compile_time_ = time; }
   /// Resumes a paused program. Otherwise starts the loaded program or, without one, the last received script.
   /// `done` receives the result: before the function returns, or later if the program is requested from a
   /// host.
@@ -118,7 +120,7 @@ class Pendant {
  private:
   Result check_can_run() const;
   Result start(std::string_view script);
-  Result start(urscript::Program program, std::string_view script);
+  Result start(urscript::Program program, std::string_view script, double delay = 0.0);
   Result resume_or_start_program();
   Result start_external_program(const StoredProgram & program, const ProgramText & text);
   void log_compile_error(const urscript::CompileError & error);
@@ -134,6 +136,7 @@ class Pendant {
   ProgramRunner & runner_;
   EventLog & log_;
   bool remote_control_;
+  double compile_time_ = 0.0;
   std::optional<std::string> operational_mode_;
   bool shutdown_requested_ = false;
   std::map<std::string, StoredProgram> programs_;

@@ -53,6 +53,22 @@ void ProgramRunner::start(urscript::Program program)
   log(LogKind::program_started, fmt::format("program '{}' started", program_name_));
 }
 
+void ProgramRunner::start_later(urscript::Program program, double delay)
+{
+  compiling_.push_back({std::move(program), delay});
+}
+
+void ProgramRunner::start_compiled()
+{
+  for (Compiling & script : compiling_) {
+    script.time_left -= context_.cycle_time;
+    if (script.time_left <= 0.0) {
+      start(std::move(script.program));
+    }
+  }
+  std::erase_if(compiling_, [](const Compiling & script) { return script.time_left <= 0.0; });
+}
+
 void ProgramRunner::start_secondary(std::unique_ptr<urscript::Machine> machine)
 {
   if (secondary_programs_.size() == max_secondary_programs) {
@@ -98,6 +114,7 @@ void ProgramRunner::shut_down()
 {
   stop("the controller switches off");
   secondary_programs_.clear();
+  compiling_.clear();
   popup_.reset();
 }
 
@@ -142,6 +159,7 @@ bool ProgramRunner::resume()
 
 void ProgramRunner::cycle()
 {
+  start_compiled();
   update_runtime_state();
   if (program_ && !paused()) {
     run_program();

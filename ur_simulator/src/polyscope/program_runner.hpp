@@ -36,6 +36,8 @@ class ProgramRunner final : public urscript::Host {
   tl::expected<urscript::Program, urscript::CompileError> compile(std::string_view text) const;
   /// Starts a program. A secondary program runs in parallel; any other replaces the running program.
   void start(urscript::Program program);
+  /// The same after `delay` s, for a script that a controller still compiles: until then, it is no program.
+  void start_later(urscript::Program program, double delay);
   /// Stops the program and decelerates the arm. The log reports the reason.
   void stop(std::string_view reason);
   /// Fault injection: ends the program without any message. Returns false if no program is running.
@@ -78,6 +80,12 @@ class ProgramRunner final : public urscript::Host {
     std::optional<urscript::Value> answer;
   };
 
+  struct Compiling {
+    urscript::Program program;
+    double time_left;  ///< s
+  };
+
+  void start_compiled();
   void start_secondary(std::unique_ptr<urscript::Machine> machine);
   void run_program();
   void run_secondary_programs();
@@ -91,6 +99,7 @@ class ProgramRunner final : public urscript::Host {
   std::string program_name_;
   std::unique_ptr<urscript::Machine> program_;
   std::vector<std::unique_ptr<urscript::Machine>> secondary_programs_;
+  std::vector<Compiling> compiling_;
   std::optional<urscript::Popup> popup_;
   std::optional<OpenRequest> request_;
   std::uint64_t request_count_ = 0;
