@@ -216,10 +216,10 @@ def test_posted_functions_run_in_the_loop_and_a_failing_one_is_logged(viewer, ca
 
 
 def test_an_error_of_a_panel_is_logged_once_and_the_page_goes_on(viewer, robot, caplog, monkeypatch):
-    monkeypatch.setattr(robot, "update", lambda: 1 / 0)
+    monkeypatch.setattr(robot, "update", lambda: [].remove("panel"))
     for _ in range(3):
         viewer.step()
-    assert caplog.text.count("ZeroDivisionError: ") == 1
+    assert caplog.text.count("\nValueError: ") == 1
 
 
 def test_a_goal_of_a_package_that_is_not_in_this_workspace_has_no_progress(viewer):
