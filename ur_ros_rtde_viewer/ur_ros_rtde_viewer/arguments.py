@@ -1,12 +1,10 @@
-"""Arguments of the viewer. Imports nothing that --help does not need."""
+"""Arguments of the viewer. Depends on the standard library alone, so that --help needs nothing else."""
 
 import argparse
 import math
 import re
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence, Tuple
-
-from ur_ros_rtde_cli.namespaces import valid
 
 DEFAULT_PORT = 8080
 DEFAULT_RATE = 30.0  # Hz
@@ -51,7 +49,7 @@ def parse_robot(text: str) -> RobotOptions:
         values[key] = value
     x, y, z, roll, pitch, yaw = (_number(text, key, values.get(key, "0")) for key in _POSE_FIELDS)
     length = _number(text, "tool_length", values["tool_length"]) if "tool_length" in values else None
-    return RobotOptions(valid(namespace), values.get("model", ""), (x, y, z), (roll, pitch, yaw),
+    return RobotOptions(_namespace(namespace), values.get("model", ""), (x, y, z), (roll, pitch, yaw),
                         values.get("kinematics_params_file", ""), values.get("tool", ""), length)
 
 
@@ -63,6 +61,11 @@ def _number(text: str, key: str, value: str) -> float:
     if not math.isfinite(number):
         raise argparse.ArgumentTypeError(f"{key} is \"{value}\" in \"{text}\": expected a finite number")
     return number
+
+
+def _namespace(text: str) -> str:
+    from ur_ros_rtde_cli.namespaces import valid  # imported here because --help does not need it
+    return valid(text)
 
 
 def _port(text: str) -> int:
@@ -99,7 +102,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="robot with this namespace; model, position (x, y, z in m) and orientation (roll, pitch, yaw in rad) of "
                              "its base_link, kinematics_params_file, tool and tool_length are optional; can be given several times")
     parser.add_argument("--version", action=_ShowVersion, nargs=0, help="show the version of the driver")
-    parser.add_argument("--namespace", default="", type=valid, metavar="NS", help="namespace of the only robot (default: none)")
+    parser.add_argument("--namespace", default="", type=_namespace, metavar="NS", help="namespace of the only robot (default: none)")
     parser.add_argument("--model", default="", metavar="MODEL", help="model of the only robot (default: reported by the driver)")
     parser.add_argument("--kinematics-params-file", default="", metavar="FILE", help="calibration of the only robot, of `ur calibration`")
     parser.add_argument("--tool", default="", metavar="FILE", help="tool of the only robot, a URDF, of which cylinders, boxes and spheres "
