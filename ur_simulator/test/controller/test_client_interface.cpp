@@ -36,6 +36,19 @@ TEST_F(ClientInterfaceTest, ReplacesRunningProgram)
                                     seconds(5)));
 }
 
+TEST_F(ClientInterfaceTest, AScriptBeginsAfterItsCompilationAlsoAfterAStop)
+{
+  controller.control({{"command", "compile_time"}, {"seconds", 0.5}});
+  TcpClient client(controller.address(), 30003);
+  const double sent = controller.state()["timestamp"].get<double>();
+  client.send("def late():\n  while True:\n    sync()\n  end\nend\n");
+  ASSERT_TRUE(wait_simulated_time(controller, 0.2, seconds(5)));
+  EXPECT_EQ(controller.state()["program"]["state"], "STOPPED");
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(wait_for_program_state(controller, "PLAYING"));
+  EXPECT_GE(controller.state()["timestamp"].get<double>(), sent + 0.5);
+}
+
 TEST_F(ClientInterfaceTest, RunsSecondaryProgramsInParallel)
 {
   TcpClient client(controller.address(), 30002);
