@@ -192,7 +192,6 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
           (options_.kind == ScriptKind::secondary || !is_from_secondary_program(message.text))) {
         error_seen_ = Clock::now();
         error_ = message;
-        on_compiled();
       }
       break;
     case PrimaryMessage::Kind::error_code:
@@ -312,7 +311,7 @@ bool ScriptMonitor::complete_if_it_must_stop()
 
 void ScriptMonitor::read_until_compiled(const std::function<bool()> & ends)
 {
-  while (!begin_seen_ && !error_seen_ && !ended_before_begin_ && !ends()) {
+  while (!begin_seen_ && !ended_before_begin_ && !ends()) {  // an error may be that of another program
     const auto message = primary_.next(message_wait);
     if (!message) {
       return;
