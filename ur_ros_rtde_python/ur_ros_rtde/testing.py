@@ -18,13 +18,13 @@ robot_model, simulator_options or driver_parameters takes the place of the one h
 import contextlib
 import pathlib
 import signal
+import socket
 import subprocess
 import threading
 import time
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 
-import domain_coordinator
 import pytest
 from ament_index_python import get_package_prefix
 from ur_simulator import SimulatedRobot, SimulatorError
@@ -33,6 +33,7 @@ from .errors import CommandFailed, Rejected
 from .robot import Robot
 
 HOME = (0.0, -1.57, 1.57, -1.57, -1.57, 0.0)  # rad
+_FIRST_PORT, _LAST_DOMAIN = 32768, 100  # of ROS's domain_coordinator: the owner of a domain has bound its port
 _READY_TIMEOUT = 60.0  # s; the driver takes 0.3 s on an idle machine
 _EXIT_TIMEOUT = 15.0  # s
 # A controller unlocks a protective stop after 5 s.
@@ -99,13 +100,21 @@ class Driver:
         self.stop()
 
 
+def _reserve_domain(reserved: contextlib.ExitStack) -> int:
+    """Returns a ROS domain that no other test on this machine uses until `reserved` is closed."""
+    for number in range(1, _LAST_DOMAIN + 1):
+        reservation = reserved.enter_context(socket.socket())
+        with contextlib.suppress(OSError):
+            reservation.bind(("", _FIRST_PORT + number))
+            return number
+    raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use by other tests")
+
+
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
     """A ROS domain of its own for this process and its children, which other hosts do not see: a goal of a test reaches no robot."""
-    reserved = contextlib.ExitStack()
-    number = reserved.enter_context(domain_coordinator.domain_id())
-    # Not `with reserved`: domain_id() takes an OSError of what runs in the domain for one of its own.
-    with contextlib.closing(reserved), pytest.MonkeyPatch.context() as environment:
+    with contextlib.ExitStack() as reserved, pytest.MonkeyPatch.context() as environment:
+        number = _reserve_domain(reserved)
         environment.setenv("ROS_DOMAIN_ID", str(number))
         environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         yield number

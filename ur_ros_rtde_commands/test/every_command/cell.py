@@ -1,11 +1,10 @@
 """A robot cell for one test: simulator, driver and client, with a separate address and ROS domain."""
 
-import contextlib
 import time
 
-import domain_coordinator
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
+from own_domain import Domain
 from publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from support import HOME, Client, Simulator, own_address, start_node, wait_for
@@ -25,17 +24,6 @@ PREPARE_LIMIT = 3.0  # s, to return home after an example
 OWN_PLUGINS = {"move_j", "move_l_relative", "move_until_force", "stop", "ft_rtde_input_enable", *(f"dashboard/{name}" for name in
                ("robot_mode", "unlock_protective_stop", "power_on", "brake_release"))}
 CODES = {value: name for name, value in vars(ErrorCode).items() if name.isupper() and isinstance(value, int)}
-
-
-class Domain:
-    """A ROS domain that no other test on this machine uses."""
-
-    def __init__(self):
-        self._reserved = contextlib.ExitStack()
-        self.number = self._reserved.enter_context(domain_coordinator.domain_id())
-
-    def close(self):
-        self._reserved.close()
 
 
 class StatusTrackingClient(Client):

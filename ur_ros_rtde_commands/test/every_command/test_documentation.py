@@ -9,7 +9,7 @@ import plugins
 import pytest
 import rclpy.action
 import ur_rtde_headers
-from cell import Domain
+from own_domain import Domain
 from support import Client, start_node, wait_for
 
 PLUGINS = plugins.find()

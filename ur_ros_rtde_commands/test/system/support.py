@@ -10,6 +10,7 @@ import subprocess
 import threading
 import time
 
+import own_domain  # noqa: F401 -- reserves a domain
 import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient

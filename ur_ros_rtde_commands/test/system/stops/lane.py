@@ -16,7 +16,8 @@ from random import Random
 from typing import Dict, List, Optional
 
 import messages
-from cell import Domain, StatusTrackingClient
+from cell import StatusTrackingClient
+from own_domain import Domain
 from plugin_prefix import TEST_COMMANDS, environment_of_test_commands
 from rclpy.action import ActionClient
 from rclpy.qos import QoSProfile
