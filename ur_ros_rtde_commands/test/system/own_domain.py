@@ -11,7 +11,6 @@ class Domain:
     """A ROS domain that no other test on this machine uses, until close()."""
 
     def __init__(self):
-        self._reservation = None
         for self.number in range(1, LAST_DOMAIN + 1):
             self._reservation = socket.socket()
             with contextlib.suppress(OSError):
