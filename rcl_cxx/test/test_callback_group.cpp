@@ -33,6 +33,29 @@ class CallbackGroupTest : public Actions {
 };
 }  // namespace
 
+TEST_F(CallbackGroupTest, CancelOfAllGoalsReachesOneThatIsBeingChecked)
+{
+  serve_with_group();
+  const auto running = send(1);
+  std::promise<void> canceled;
+  on_cancel = [&](Handle &) {
+    canceled.set_value();
+    return true;
+  };
+  std::promise<void> checked;
+  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) -> rcl_cxx::GoalResponse {
+    checked.set_value();
+    EXPECT_EQ(canceled.get_future().wait_for(kLimit), std::future_status::ready);
+    return {};
+  };
+  auto response = client->async_send_goal(goal_of(2), {});
+  get(checked.get_future());
+  auto cancel = client->async_cancel_all_goals();
+  EXPECT_FALSE(get(std::move(response))) << "it was canceled before it was accepted";
+  EXPECT_EQ(get(std::move(cancel)).goals.size(), 1U);
+  EXPECT_TRUE(accepted(0)->canceled());
+}
+
 TEST_F(CallbackGroupTest, CancelRequestsDoNotWaitForTheCallbackOfAGoalRequest)
 {
   serve_with_group();

@@ -20,6 +20,7 @@ using testing::UnorderedElementsAre;
 
 namespace {
 constexpr Gid kClient{1};
+constexpr Gid kInItsProcess{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7};
 constexpr Gid kOther{2};
 constexpr Gid kThird{3};
 const ServiceClients kNobody{};
@@ -51,15 +52,22 @@ TEST_F(ClientWatchTest, KeepsDiscoveredClientForever)
 
 TEST_F(ClientWatchTest, WaitsForDiscoveryAndNoLonger)
 {
-  EXPECT_FALSE(exact.is_lost(kNobody, at(0.0)));
-  EXPECT_FALSE(exact.is_lost({{kOther}}, at(0.9)));
-  EXPECT_TRUE(exact.is_lost({{kOther}}, at(1.1))) << "another client is not the one that sent the goal";
+  EXPECT_FALSE(exact.is_lost({{kInItsProcess}}, at(0.0)));
+  EXPECT_FALSE(exact.is_lost({{kInItsProcess}}, at(0.9)));
+  EXPECT_TRUE(exact.is_lost({{kInItsProcess}}, at(1.1)))
+      << "another client is not the one that sent the goal";
+}
+
+TEST_F(ClientWatchTest, LosesClientAtOnceOfWhoseProcessNothingIsKnown)
+{
+  EXPECT_TRUE(exact.is_lost({{kOther}}, at(0.0)));
+  EXPECT_TRUE(exact.is_lost(kNobody, at(0.0)));
 }
 
 TEST_F(ClientWatchTest, KeepsClientThatIsDiscoveredLate)
 {
-  EXPECT_FALSE(exact.is_lost({{kOther}}, at(0.9)));
-  EXPECT_FALSE(exact.is_lost({{kClient}}, at(1.1)));
+  EXPECT_FALSE(exact.is_lost({{kInItsProcess}}, at(0.9)));
+  EXPECT_FALSE(exact.is_lost({{kInItsProcess, kClient}}, at(1.1)));
 }
 
 TEST_F(ClientWatchTest, LosesUnidentifiedClientWithTheLastCandidate)
@@ -87,11 +95,11 @@ TEST_F(ClientWatchTest, CountsClientsWhereNoEndpointsAreListed)
 /// A client with a context of its own, as in another process.
 class OtherProcess {
  public:
-  OtherProcess()
+  explicit OtherProcess(const std::string & action = "fibonacci")
   {
     executor_.add_node(node_);
     thread_ = std::thread([this] { executor_.spin(); });
-    client = rcl_cxx::create_action_client<Fibonacci>(*node_, "fibonacci");
+    client = rcl_cxx::create_action_client<Fibonacci>(*node_, action);
     EXPECT_TRUE(client->wait_for_action_server(kLimit));
   }
   ~OtherProcess()
@@ -241,6 +249,39 @@ TEST_F(ClientLostTest, DoesNotLeaveGoalRunningThatItSentAsItEnded)
     const std::lock_guard lock(mutex);
     return without_client == std::vector{goal} || discarded == std::vector{goal};
   }));
+}
+
+/// As a launch file remaps it, with a rule for each topic and service.
+TEST(RemappedActionTest, DoesNotLoseItsClients)
+{
+  std::vector<std::string> rules{"--ros-args"};
+  for (const std::string name : {"send_goal", "cancel_goal", "get_result", "feedback", "status"}) {
+    rules.insert(rules.end(), {"-r", "fibonacci/_action/" + name + ":=count/_action/" + name});
+  }
+  const auto context = make_context(rules);
+  rcl_cxx::Node node(context, "node", "/test");
+  rcl_cxx::Executor executor(context);
+  executor.add_node(node);
+  std::thread thread([&] { executor.spin(); });
+  std::promise<std::shared_ptr<Handle>> accepted;
+  std::atomic<bool> lost{false};
+  rcl_cxx::TypedCallbacks<Fibonacci> handlers;
+  handlers.handle_accepted = [&](std::shared_ptr<Handle> handle) { accepted.set_value(std::move(handle)); };
+  handlers.on_client_lost = [&](Handle &) { lost = true; };
+  auto server = rcl_cxx::create_action_server<Fibonacci>(node, "fibonacci", std::move(handlers));
+  {
+    OtherProcess other("count");
+    other.send_accepted_goal();
+    const auto handle = accepted.get_future().get();
+    std::this_thread::sleep_for(1.5 * ClientWatch::kDiscoveryLimit);
+    EXPECT_FALSE(lost);
+    EXPECT_TRUE(handle->is_active());
+    other.client.reset();
+    EXPECT_TRUE(eventually([&] { return lost.load(); })) << "it is still watched";
+  }
+  server.reset();
+  context->shutdown("end of the test");
+  thread.join();
 }
 
 TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <future>
+#include <latch>
+#include <thread>
 
 #include "rcl_cxx/rcl_cxx.hpp"
 #include "ros_fixture.hpp"
@@ -54,6 +57,26 @@ TEST(ContextShutdownTest, HappensOnceAndKeepsItsReason)
   EXPECT_FALSE(context->ok());
   EXPECT_EQ(context->shutdown_reason(), "first");
   EXPECT_TRUE(context->wait_for_shutdown(std::chrono::seconds(0)));
+}
+
+TEST(ContextShutdownTest, HappensOnceIfTwoThreadsAskForIt)
+{
+  for (int round = 0; round < 50; ++round) {
+    const auto context = make_context();
+    std::atomic<int> callbacks{0};
+    std::atomic<int> succeeded{0};
+    context->add_pre_shutdown_callback([&] { ++callbacks; });
+    std::latch together(2);
+    const auto shut_down = [&] {
+      together.arrive_and_wait();
+      succeeded += context->shutdown("of two") ? 1 : 0;
+    };
+    std::thread other(shut_down);
+    shut_down();
+    other.join();
+    EXPECT_EQ(succeeded, 1);
+    EXPECT_EQ(callbacks, 1);
+  }
 }
 
 TEST(ContextShutdownTest, RunsCallbacksInOrder)

@@ -75,6 +75,14 @@ TEST(ParameterOverrideTest, OfIntegerIsConvertedToDouble)
   EXPECT_THAT(node.declare_parameter<std::vector<double>>("home", {}), ElementsAre(1.0, 2.0));
 }
 
+TEST(ParameterOverrideTest, MayBeAnEmptyList)
+{
+  Node node(make_context({"--ros-args", "-p", "plugins:=[]", "-p", "home:=[]", "-p", "speed:=[]"}), "node");
+  EXPECT_THAT(node.declare_parameter<std::vector<std::string>>("plugins", {"move_j"}), testing::IsEmpty());
+  EXPECT_THAT(node.declare_parameter<std::vector<double>>("home", {1.0}), testing::IsEmpty());
+  EXPECT_THROW(node.declare_parameter("speed", 1.0), rcl_cxx::Error);
+}
+
 TEST(ParameterOverrideTest, IsRejectedWithWrongTypeOrOutOfRange)
 {
   const auto context = make_context({"--ros-args", "-p", "host:=1", "-p", "speed:=9.0"});

@@ -50,6 +50,7 @@ void ActionAnnouncement::set_on_ready_callbacks()
     return create_server();
   }
   set_callback(rcl_event_set_callback, matched_, kMatched);
+  notify(kMatched);  // a client may have been there before
 }
 
 void ActionAnnouncement::clear_on_ready_callbacks() noexcept

@@ -4,17 +4,21 @@
 
 /// Checks whether the clients of goals still exist. In the executor's thread.
 namespace rcl_cxx::detail {
+/// As ROS remaps it: each of an action's services may have a name of its own.
+std::string ActionServerImpl::service_name(const char * service) const
+{
+  return node()->resolve(name_ + "/_action/" + service, true);
+}
+
 void ActionServerImpl::watch_client(const std::shared_ptr<ServerGoalImpl> & goal,
                                     const rmw_request_id_t & request)
 {
   if (!client_timer_) {
     return;
   }
-  {
-    const std::lock_guard lock(mutex_);
-    watched_goals_.push_back(goal);
-    goal->client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
-  }
+  const std::lock_guard lock(mutex_);
+  watched_goals_.push_back(goal);
+  goal->client.emplace(client_of(request), requests_carry_endpoints(), ClientWatch::Clock::now());
   if (client_timer_->is_canceled()) {
     client_timer_->reset();
   }
@@ -24,6 +28,9 @@ ActionServerImpl::Goals ActionServerImpl::get_watched_goals()
 {
   const std::lock_guard lock(mutex_);
   std::erase_if(watched_goals_, [](const auto & goal) { return !goal->client || !goal->needs_client(); });
+  if (watched_goals_.empty()) {
+    client_timer_->cancel();
+  }
   return watched_goals_;
 }
 
@@ -34,7 +41,6 @@ void ActionServerImpl::check_clients()
   }
   const Goals goals = get_watched_goals();
   if (goals.empty()) {
-    client_timer_->cancel();
     return;
   }
   const auto known = find_clients(*node(), service_name(kSendGoalName));

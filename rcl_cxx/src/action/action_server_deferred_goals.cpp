@@ -62,10 +62,6 @@ void ActionServerImpl::send_deferred_response()
     node = deferred_goals_.extract(ready);
   }
   const DeferredGoal & goal = node.mapped();
-  if (*goal.response && goal.canceled) {
-    discard(node.key());
-    return reject(node.key(), goal.request.id, "canceled before it was accepted");
-  }
   send_decision(node.key(), goal.request, *goal.response);
 }
 

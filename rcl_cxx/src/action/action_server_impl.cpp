@@ -26,7 +26,8 @@ constexpr std::chrono::milliseconds kResultRequestLimit{250};
 
 // rcl_action expires a goal when its age, in ROS time, exceeds the timeout.
 constexpr std::chrono::milliseconds kExpirySlack{5};
-constexpr std::chrono::milliseconds kExpiryRetry{20};
+constexpr std::chrono::milliseconds kFirstExpiryRetry{20};
+constexpr std::chrono::seconds kLongestExpiryRetry{1};
 
 // A graph query takes 28 us with 93 actions and one client each.
 constexpr std::chrono::milliseconds kClientCheckPeriod{50};
@@ -53,6 +54,7 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
   NodeImpl & owner = *this->node();
   name_ = owner.resolve(name, false);
   const auto lock = owner.lock_to_create(label());
+  const auto no_jump = owner.get_clock().lock();
   check_rcl(compat::timer_init_canceled(&rcl_timer_, owner.get_clock().handle(), owner.get_context().handle(),
                                         kCenturyNs),
             label(), "cannot create a timer");
@@ -70,6 +72,7 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
 ActionServerImpl::~ActionServerImpl()
 {
   const std::lock_guard lock(node()->mutex());
+  const auto no_jump = node()->get_clock().lock();
   ignore_rcl(rcl_action_server_fini(&server_, node()->handle()));
   ignore_rcl(rcl_timer_fini(&rcl_timer_));
 }
@@ -372,7 +375,8 @@ void ActionServerImpl::schedule_expiry_locked()
   // A goal may be overdue by this clock and not have expired by ROS time.
   const std::chrono::nanoseconds left =
       first_end + result_timeout_ + kExpirySlack - std::chrono::steady_clock::now();
-  expiry_timer_->call_once_in(std::max<std::chrono::nanoseconds>(left, kExpiryRetry));
+  const auto retry = std::clamp<std::chrono::nanoseconds>(-left, kFirstExpiryRetry, kLongestExpiryRetry);
+  expiry_timer_->call_once_in(std::max<std::chrono::nanoseconds>(left, retry));
 }
 }  // namespace detail
 

@@ -5,6 +5,7 @@
 
 #include <action_msgs/srv/cancel_goal.hpp>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -62,13 +63,13 @@ class ActionServerImpl : public Waitable {
   struct GoalRequest {
     rmw_request_id_t id;
     std::shared_ptr<void> message;
+    std::uint64_t cancels_before;  ///< cancels_of_all_ when it was taken
   };
 
   /// A goal request whose response is sent later.
   struct DeferredGoal {
     GoalRequest request;
     std::optional<GoalResponse> response{};  ///< to be sent by the executor's thread
-    bool canceled = false;
   };
 
   std::shared_ptr<ServerGoalImpl> find(const GoalUUID & id) const;
@@ -78,12 +79,13 @@ class ActionServerImpl : public Waitable {
 
   // Requests of clients, in the executor's thread.
   void take_goal();
+  std::uint64_t cancels_of_all() const;
   bool is_known(const GoalUUID & id) const;
   GoalDecision handle_goal(const GoalUUID & id, const void * request) noexcept;
   void send_decision(const GoalUUID & id, const GoalRequest & request, const GoalResponse & response);
   void reject(const GoalUUID & id, const rmw_request_id_t & request_id, const std::string & reason);
   tl::expected<std::shared_ptr<ServerGoalHandle>, std::string> accept(const GoalUUID & id,
-                                                                      const std::shared_ptr<void> & request);
+                                                                      const GoalRequest & request);
   void send_acceptance(const rmw_request_id_t & request, std::shared_ptr<ServerGoalHandle> handle);
   void run_accepted(const std::shared_ptr<ServerGoalHandle> & handle) noexcept;
   void discard(const GoalUUID & id) noexcept;
@@ -122,8 +124,9 @@ class ActionServerImpl : public Waitable {
   void schedule_expiry_locked();
 
   // Clients, in the executor's thread.
-  std::string service_name(const char * service) const { return name_ + "/_action/" + service; }
+  std::string service_name(const char * service) const;
   void watch_client(const std::shared_ptr<ServerGoalImpl> & goal, const rmw_request_id_t & request);
+  /// Without any, their checks end until the next goal.
   Goals get_watched_goals();
   void check_clients();
 
@@ -141,7 +144,8 @@ class ActionServerImpl : public Waitable {
   rcl_action_server_t server_ = rcl_action_get_zero_initialized_server();
   std::map<GoalUUID, std::shared_ptr<ServerGoalImpl>> goals_;
   std::map<GoalUUID, DeferredGoal> deferred_goals_;
-  Goals watched_goals_;  // those whose client is watched, which may outlast goals_
+  std::uint64_t cancels_of_all_ = 0;  // requests to cancel all goals
+  Goals watched_goals_;               // those whose client is watched, which may outlast goals_
   std::shared_ptr<TimerImpl> expiry_timer_;
   std::shared_ptr<TimerImpl> client_timer_;  // runs while clients are watched
   bool retired_ = false;

@@ -79,16 +79,23 @@ void ActionServerImpl::take_goal()
   }
   check_rcl(code, name_, "cannot take a goal");
   const GoalUUID id = type_.get_goal_id(request.get());
+  const std::uint64_t cancels_before = cancels_of_all();
   // rcl_action checks this only after handle_goal.
   if (is_known(id)) {
     return reject(id, request_id, "a goal with this id exists already");
   }
   const GoalDecision decision = handle_goal(id, request.get());
   if (const auto * const deferred = std::get_if<DeferredGoalResponse>(&decision)) {
-    defer(id, {request_id, request}, *deferred);
+    defer(id, {request_id, request, cancels_before}, *deferred);
   } else {
-    send_decision(id, {request_id, request}, std::get<GoalResponse>(decision));
+    send_decision(id, {request_id, request, cancels_before}, std::get<GoalResponse>(decision));
   }
+}
+
+std::uint64_t ActionServerImpl::cancels_of_all() const
+{
+  const std::lock_guard lock(mutex_);
+  return cancels_of_all_;
 }
 
 bool ActionServerImpl::is_known(const GoalUUID & id) const
@@ -110,7 +117,7 @@ void ActionServerImpl::send_decision(const GoalUUID & id, const GoalRequest & re
   if (!response) {
     return reject(id, request.id, response.error());
   }
-  if (auto handle = accept(id, request.message)) {
+  if (auto handle = accept(id, request)) {
     send_acceptance(request.id, std::move(*handle));
   } else {
     discard(id);
@@ -160,11 +167,14 @@ GoalDecision ActionServerImpl::handle_goal(const GoalUUID & id, const void * req
 }
 
 tl::expected<std::shared_ptr<ServerGoalHandle>, std::string> ActionServerImpl::accept(
-    const GoalUUID & id, const std::shared_ptr<void> & request)
+    const GoalUUID & id, const GoalRequest & request)
 {
   const std::lock_guard lock(mutex_);
   if (!node()->get_context().ok()) {
     return tl::make_unexpected(std::string("shutting down"));
+  }
+  if (cancels_of_all_ != request.cancels_before) {
+    return tl::make_unexpected(std::string("canceled before it was accepted"));
   }
   rcl_action_goal_info_t info = rcl_action_get_zero_initialized_goal_info();
   std::copy(id.bytes.begin(), id.bytes.end(), std::begin(info.goal_id.uuid));
@@ -176,7 +186,7 @@ tl::expected<std::shared_ptr<ServerGoalHandle>, std::string> ActionServerImpl::a
   const auto goal = std::make_shared<ServerGoalImpl>(self, id, *rcl_handle);
   goals_.emplace(id, goal);
   goal->update(GOAL_EVENT_EXECUTE);
-  auto handle = std::make_shared<ServerGoalHandle>(goal, type_, request);
+  auto handle = std::make_shared<ServerGoalHandle>(goal, type_, request.message);
   goal->handle = handle;
   return handle;
 }
@@ -219,10 +229,8 @@ void ActionServerImpl::process_cancel(const action_msgs::srv::CancelGoal::Reques
   std::vector<action_msgs::msg::GoalInfo> candidates;
   {
     const std::lock_guard lock(mutex_);
-    if (request.goal_info == action_msgs::msg::GoalInfo()) {  // all goals
-      for (auto & [id, goal] : deferred_goals_) {
-        goal.canceled = true;
-      }
+    if (request.goal_info == action_msgs::msg::GoalInfo()) {
+      ++cancels_of_all_;  // also of those that are being checked
     }
     check_rcl(rcl_action_process_cancel_request(&server_, &rcl_request, &rcl_response), name_,
               "cannot process a cancel request");

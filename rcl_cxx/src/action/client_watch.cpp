@@ -20,6 +20,9 @@ bool ClientWatch::is_lost(const ServiceClients & known, Clock::time_point now)
   if (discovered_) {
     return true;
   }
+  if (client_is_endpoint_ && discovery_of(client_, true, known) == ClientDiscovery::gone) {
+    return true;
+  }
   if (now < decides_from_) {
     endpoints_are_listed_ = endpoints_are_listed_ || !known.endpoints.empty();
     std::copy_if(known.endpoints.begin(), known.endpoints.end(), std::back_inserter(candidates_),

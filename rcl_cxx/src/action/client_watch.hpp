@@ -6,8 +6,8 @@
 #include "services/service_clients.hpp"
 
 namespace rcl_cxx::detail {
-/// Determines whether the client that sent a request still exists. A client counts as lost if it has not been
-/// discovered within kDiscoveryLimit.
+/// Determines whether the client that sent a request still exists. A client counts as lost if no endpoint of
+/// its process is known anymore, or if it has not been discovered within kDiscoveryLimit.
 class ClientWatch {
  public:
   using Clock = std::chrono::steady_clock;

@@ -125,8 +125,9 @@ bool ContextImpl::shutdown(const std::string & reason)
       return false;
     }
     reason_ = reason;
+    state_ = State::shutting_down;
   }
-  set_state(State::shutting_down);
+  state_changed_.notify_all();
   run_callbacks(Phase::pre_shutdown);
   run_callbacks(Phase::action_servers);
   run_callbacks(Phase::rosout);

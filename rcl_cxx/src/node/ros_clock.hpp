@@ -21,6 +21,8 @@ class RosClock {
   void override_with(std::optional<std::int64_t> now_ns);
 
   rcl_clock_t * handle() noexcept { return &clock_; }
+  /// To hold while rcl adds a timer to this clock, or removes it: the time may jump in another thread.
+  std::unique_lock<std::mutex> lock() const { return std::unique_lock(mutex_); }
 
  private:
   mutable std::mutex mutex_;  // rcl's functions on one clock are not thread-safe

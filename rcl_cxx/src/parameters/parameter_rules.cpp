@@ -79,8 +79,32 @@ SetParametersResult check_value(const Parameter & parameter, ParameterType type,
   return result;
 }
 
+namespace {
+/// rcl reads the empty list of a parameter file as a value that is not set.
+ParameterValue empty_list(ParameterType type)
+{
+  switch (type) {
+    case ParameterType::byte_array:
+      return std::vector<std::uint8_t>{};
+    case ParameterType::boolean_array:
+      return std::vector<bool>{};
+    case ParameterType::integer_array:
+      return std::vector<std::int64_t>{};
+    case ParameterType::floating_point_array:
+      return std::vector<double>{};
+    case ParameterType::string_array:
+      return std::vector<std::string>{};
+    default:
+      return {};
+  }
+}
+}  // namespace
+
 ParameterValue as_type(const ParameterValue & value, ParameterType type)
 {
+  if (value.get_type() == ParameterType::not_set) {
+    return empty_list(type);
+  }
   if (type == ParameterType::floating_point && value.get_type() == ParameterType::integer) {
     return static_cast<double>(value.get<std::int64_t>());
   }
