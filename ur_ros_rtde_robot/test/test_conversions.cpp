@@ -120,6 +120,19 @@ TEST(TcpFrameForceTest, RotatesTheForceFromTheBaseToTheTcpFrame)
   }
 }
 
+TEST(AtTcpTest, MovesTheTorqueFromTheFlange)
+{
+  // The tool points down, the TCP is 0.2 m in front of the flange, and 10 N push it along y of the base.
+  const Vector6 tcp{0.3, 0.1, 0.2, pi, 0.0, 0.0};
+  const Vector6 offset{0.0, 0.0, 0.2, 0.0, 0.0, 0.7};
+  const Vector6 at_flange{0.0, 10.0, 0.0, 2.0, 0.0, 0.0};  // (0, 0, -0.2) x (0, 10, 0)
+  const Vector6 wrench = at_tcp(at_flange, tcp, offset);
+  const Vector6 expected{0.0, 10.0, 0.0, 0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(wrench[i], expected[i], 1e-12);
+  }
+}
+
 TEST(ArmLimitsTest, AreFoundInAnySpellingAndOnlyForKnownModels)
 {
   ASSERT_TRUE(arm_limits("UR10e"));

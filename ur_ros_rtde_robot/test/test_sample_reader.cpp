@@ -11,7 +11,7 @@ namespace {
 TEST(SampleReaderTest, NumbersThatTheControllerDoesNotProvideAreNaN)
 {
   const auto state = std::make_shared<ur_rtde::RobotState>(std::vector<std::string>{"timestamp"});
-  const SampleReader reader(state, 0);
+  const SampleReader reader(state, 0, true);
   Sample sample;
   reader.read(sample);
   for (const double value : {sample.actual_q[0], sample.payload, sample.analog_inputs[0],

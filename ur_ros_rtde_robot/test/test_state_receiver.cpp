@@ -61,6 +61,32 @@ TEST_F(StateReceiverTest, FillsASampleWithTheRobotsState)
   EXPECT_LT(std::abs(std::chrono::duration<double>(age).count()), 1.0);
 }
 
+/// A push at the TCP has no moment about it, but RTDE's actual_TCP_force of an e-Series is that at the
+/// flange.
+TEST_F(StateReceiverTest, MovesTheWrenchOfAnESeriesToTheTcp)
+{
+  for (const auto & [model, version] : {std::pair{"ur10e", "5.12.0"}, std::pair{"ur10", "3.15.8"}}) {
+    auto simulator = Controller::options();
+    simulator.model = model;
+    simulator.polyscope_version = version;
+    controller.start(simulator);
+    controller.control(
+        {{"command", "run_script"}, {"script", "def tool():\n  set_tcp(p[0, 0, 0.2, 0, 0, 0])\nend"}});
+    auto robot = receiver();
+    ASSERT_TRUE(connected(*robot));
+    controller.control({{"command", "push"}, {"force", {0.0, 40.0, 0.0}}, {"duration", 8.0}});
+    ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_force[1] > 20.0; })) << model;
+    const auto sample = *robot->latest();
+    EXPECT_NEAR(sample.tcp_offset[2], 0.2, 1e-9);
+    for (const int axis : {3, 4, 5}) {
+      EXPECT_NEAR(sample.actual_tcp_force[static_cast<std::size_t>(axis)], 0.0, 1.0)
+          << model << ": of 4 Nm at the flange";
+    }
+    robot.reset();
+    controller.stop();
+  }
+}
+
 TEST_F(StateReceiverTest, ReceivesAtTheRequestedFrequency)
 {
   controller.start();

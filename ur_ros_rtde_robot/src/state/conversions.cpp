@@ -109,6 +109,19 @@ Vector6 pose_inverse(const Vector6 & pose)
   return {-p[0], -p[1], -p[2], -pose[3], -pose[4], -pose[5]};
 }
 
+Vector6 at_tcp(const Vector6 & wrench_at_flange, const Vector6 & tcp, const Vector6 & tcp_offset)
+{
+  const Vector6 flange = pose_trans(tcp, pose_inverse(tcp_offset));
+  const Vector6 & w = wrench_at_flange;
+  const Vector3 lever{tcp[0] - flange[0], tcp[1] - flange[1], tcp[2] - flange[2]};
+  return {w[0],
+          w[1],
+          w[2],
+          w[3] - (lever[1] * w[2] - lever[2] * w[1]),
+          w[4] - (lever[2] * w[0] - lever[0] * w[2]),
+          w[5] - (lever[0] * w[1] - lever[1] * w[0])};
+}
+
 Vector6 tcp_frame_force(const Sample & sample)
 {
   const auto & wrench = sample.actual_tcp_force;

@@ -3,10 +3,13 @@
 #include <ur_rtde/robot_state.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
+
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -19,12 +22,26 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 Sample empty_sample()
 {
   Sample sample{};
-  for (auto * field : {&sample.target_q, &sample.target_qd, &sample.target_qdd, &sample.target_current,
-                       &sample.target_moment, &sample.actual_q, &sample.actual_qd, &sample.actual_current,
-                       &sample.actual_current_as_torque, &sample.joint_control_output,
-                       &sample.joint_temperatures, &sample.actual_joint_voltage, &sample.actual_tcp_pose,
-                       &sample.actual_tcp_speed, &sample.target_tcp_pose, &sample.target_tcp_speed,
-                       &sample.actual_tcp_force, &sample.ft_raw_wrench, &sample.payload_inertia}) {
+  for (auto * field : {&sample.target_q,
+                       &sample.target_qd,
+                       &sample.target_qdd,
+                       &sample.target_current,
+                       &sample.target_moment,
+                       &sample.actual_q,
+                       &sample.actual_qd,
+                       &sample.actual_current,
+                       &sample.actual_current_as_torque,
+                       &sample.joint_control_output,
+                       &sample.joint_temperatures,
+                       &sample.actual_joint_voltage,
+                       &sample.actual_tcp_pose,
+                       &sample.actual_tcp_speed,
+                       &sample.target_tcp_pose,
+                       &sample.target_tcp_speed,
+                       &sample.tcp_offset,
+                       &sample.actual_tcp_force,
+                       &sample.ft_raw_wrench,
+                       &sample.payload_inertia}) {
     field->fill(nan);
   }
   sample.actual_tool_accelerometer.fill(nan);
@@ -105,6 +122,7 @@ void bind_tool(Binder & bind)
   bind.vector("actual_TCP_pose", &Sample::actual_tcp_pose);
   bind.vector("actual_TCP_speed", &Sample::actual_tcp_speed);
   bind.vector("actual_TCP_force", &Sample::actual_tcp_force);
+  bind.vector("tcp_offset", &Sample::tcp_offset);
   bind.vector("target_TCP_pose", &Sample::target_tcp_pose);
   bind.vector("target_TCP_speed", &Sample::target_tcp_speed);
   bind.vector("ft_raw_wrench", &Sample::ft_raw_wrench);
@@ -166,8 +184,9 @@ void bind_registers(Binder & bind, int offset)
 
 }  // namespace
 
-SampleReader::SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset)
-    : state_(std::move(state))
+SampleReader::SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset,
+                           bool force_is_at_flange)
+    : state_(std::move(state)), force_is_at_flange_(force_is_at_flange)
 {
   Binder bind(*state_, copies_);
   bind_joints(bind);
@@ -192,6 +211,9 @@ std::chrono::steady_clock::time_point SampleReader::read(Sample & sample) const
       state_.get(), [](ur_rtde::RobotState * state) { state->unlockUpdateStateMutex(); });
   for (const auto & copy : copies_) {
     copy(sample);
+  }
+  if (force_is_at_flange_ && std::isfinite(sample.tcp_offset[0])) {
+    sample.actual_tcp_force = at_tcp(sample.actual_tcp_force, sample.actual_tcp_pose, sample.tcp_offset);
   }
   return state_->getPackageTime();
 }

@@ -18,8 +18,8 @@ namespace ur_ros_rtde {
 class SampleReader {
  public:
   /// Variables that `state` lacks are NaN or 0 in the samples. `register_offset`: 0, or 24 for the upper
-  /// range.
-  SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset);
+  /// range. `force_is_at_flange`: actual_TCP_force is, as on e-Series.
+  SampleReader(std::shared_ptr<ur_rtde::RobotState> state, int register_offset, bool force_is_at_flange);
   ~SampleReader();
 
   /// Returns the arrival time of the package.
@@ -28,6 +28,7 @@ class SampleReader {
  private:
   std::shared_ptr<ur_rtde::RobotState> state_;
   std::vector<std::function<void(Sample &)>> copies_;
+  const bool force_is_at_flange_;
 };
 
 }  // namespace ur_ros_rtde

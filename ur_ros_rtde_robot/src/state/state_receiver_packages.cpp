@@ -127,7 +127,7 @@ Error StateReceiver::Impl::receive_packages(const std::stop_token & stop)
 {
   const auto interface = interface_;
   const auto state = interface->getRobotState();
-  const SampleReader reader(state, options_.upper_range_registers ? 24 : 0);
+  const SampleReader reader(state, options_.upper_range_registers ? 24 : 0, !version_->cb3());
   Sample sample = latest_;
   ++sample.link;
   on_package(sample, reader);

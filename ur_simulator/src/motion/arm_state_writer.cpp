@@ -19,7 +19,8 @@ void ArmStateWriter::write(const Setpoint & target, const JointServoLoop & actua
   write_joints(actual.position(), actual.velocity(), state.actual);
   write_target(state);
   write_actual(state);
-  state.measured = {state.actual.position, state.actual.current, state.actual_tcp_pose};
+  state.measured = {state.actual.position, state.actual.current, state.actual_tcp_pose,
+                    state.tool_acceleration};
   first_cycle_ = false;
 }
 

@@ -66,7 +66,7 @@ void RealtimePacket::put_motion(const ControllerState & s)
   put(s.target.current);  // joint control currents
   put(s.measured.tcp_pose);
   put(s.actual_tcp_speed);
-  put(s.actual_tcp_force);
+  put(s.reported_tcp_force);
   put(s.target_tcp_pose);
   put(s.target_tcp_speed);
   put(static_cast<double>(s.io.digital_inputs));
@@ -84,7 +84,7 @@ void RealtimePacket::put_status(const ControllerState & s)
   }
   put(static_cast<double>(s.safety_mode));
   put_zeros(6);  // internal
-  put(s.tool_acceleration);
+  put(s.measured.tool_acceleration);
   put_zeros(6);  // internal
   put(s.reported_speed_scaling());
   put(s.payload.mass * s.actual_tcp_speed.head<3>().norm());  // linear momentum norm

@@ -228,7 +228,7 @@ std::string configuration_data(const RobotModel & model)
 std::string force_mode_data(const RobotModel & model, const ControllerState & s)
 {
   std::string data;
-  put(data, s.actual_tcp_force);
+  put(data, s.reported_tcp_force);
   put_f64(data, singularity_distance(model, s.actual.position));
   return data;
 }

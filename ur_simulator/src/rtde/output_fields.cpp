@@ -116,7 +116,7 @@ void add_tcp_and_payload_outputs(std::vector<OutputField> & fields)
   const std::vector<OutputField> rows{
       {"actual_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.measured.tcp_pose)},
       {"actual_TCP_speed", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_speed)},
-      {"actual_TCP_force", vector6d, {}, 0, UR_OUTPUT(s.actual_tcp_force)},
+      {"actual_TCP_force", vector6d, {}, 0, UR_OUTPUT(s.reported_tcp_force)},
       {"target_TCP_pose", vector6d, {}, 0, UR_OUTPUT(s.target_tcp_pose)},
       {"target_TCP_speed", vector6d, {}, 0, UR_OUTPUT(s.target_tcp_speed)},
       {"actual_TCP_acceleration", vector6d, {v(5, 23), never}, 0, UR_OUTPUT(s.actual_tcp_acceleration)},
@@ -134,7 +134,7 @@ void add_tcp_and_payload_outputs(std::vector<OutputField> & fields)
       {"payload", double_, {v(5, 5, 1), v(3, 11)}, 0, UR_OUTPUT(s.payload.mass)},
       {"payload_cog", vector3d, {v(5, 5, 1), v(3, 11)}, 0, UR_OUTPUT(s.payload.center_of_gravity)},
       {"payload_inertia", vector6d, {v(5, 11), v(3, 15)}, 0, UR_OUTPUT(s.payload.inertia)},
-      {"actual_tool_accelerometer", vector3d, {}, 0, UR_OUTPUT(s.tool_acceleration)},
+      {"actual_tool_accelerometer", vector3d, {}, 0, UR_OUTPUT(s.measured.tool_acceleration)},
       {"actual_momentum", double_, {}, 0, UR_OUTPUT(s.payload.mass * s.actual_tcp_speed.head<3>().norm())},
   };
   fields.insert(fields.end(), rows.begin(), rows.end());

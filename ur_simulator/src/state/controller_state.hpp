@@ -81,11 +81,12 @@ struct JointState {
   Vector6 torque = Vector6::Zero();        ///< N m
 };
 
-/// What the sensors of the joints report.
-struct JointReadings {
-  Vector6 position = Vector6::Zero();  ///< rad
-  Vector6 current = Vector6::Zero();   ///< A
-  Vector6 tcp_pose = Vector6::Zero();  ///< from these positions
+/// What the sensors of the arm report.
+struct Readings {
+  Vector6 position = Vector6::Zero();                    ///< rad
+  Vector6 current = Vector6::Zero();                     ///< A
+  Vector6 tcp_pose = Vector6::Zero();                    ///< from these positions
+  Vector3 tool_acceleration = Vector3(0.0, 0.0, -9.81);  ///< as ControllerState::tool_acceleration
 };
 
 /// The data that a control cycle reads and writes. Used on the controller's thread only. Poses, twists and
@@ -96,8 +97,8 @@ struct ControllerState {
   double timestamp = 0.0;  ///< simulated time since start, cycle * cycle time, s
 
   JointState target;
-  JointState actual;       ///< without noise
-  JointReadings measured;  ///< the same with noise: what clients and programs see
+  JointState actual;  ///< without noise
+  Readings measured;  ///< the same with noise: what clients and programs see
   Vector6 joint_temperatures = Vector6::Constant(28.0);  ///< deg C
   std::array<std::int32_t, 6> joint_modes{};             ///< 253 RUNNING, 255 IDLE, 239 POWER_OFF, …
 
@@ -109,8 +110,10 @@ struct ControllerState {
   Vector6 actual_tcp_speed = Vector6::Zero();
   Vector6 target_tcp_acceleration = Vector6::Zero();
   Vector6 actual_tcp_acceleration = Vector6::Zero();
-  Vector6 actual_tcp_force = Vector6::Zero();  ///< get_tcp_force(): filtered, without the payload's weight,
-                                               ///< relative to the last zeroing
+  Vector6 reported_tcp_force = Vector6::Zero();  ///< get_tcp_force(): actual_tcp_force, but on e-Series at
+                                                 ///< the flange, unless an external sensor measures it
+  Vector6 actual_tcp_force = Vector6::Zero();    ///< filtered, without the payload's weight,
+                                                 ///< relative to the last zeroing
   /// Wrench at the flange in flange axes, with the weight of the load, not zeroed.
   Vector6 ft_raw_wrench = Vector6::Zero();
   /// Wrench of surfaces and pushes on the tool, without noise, filter and load.

@@ -23,10 +23,16 @@ Vector6 load_wrench(const Payload & load, const Vector3 & specific_force)
 
 }  // namespace
 
+bool reports_force_at_flange(const RobotModel & model, const ControllerState & state)
+{
+  return model.series != Series::cb3 && !state.external_sensor.enabled;
+}
+
 /// Noise before the filter, so that the filtered readings have that of recordings: 0.15 N and 5 mN m
 /// (e-Series), 0.55 N and 0.11 N m (CB3).
 ForceTorqueSensor::ForceTorqueSensor(const RobotModel & model, std::uint64_t seed)
     : filter_gain_(1.0 - std::exp(-2.0 * pi * cutoff_frequency * model.cycle_time())),
+      model_(model),
       random_(seed),
       force_noise_(model.has_force_torque_sensor() ? 0.3 : 0.6),
       torque_noise_(model.has_force_torque_sensor() ? 0.009 : 0.12)
@@ -84,7 +90,9 @@ void ForceTorqueSensor::step(const Payload & load, ControllerState & state)
     zero_requested_ = false;
   }
   force_ = to_base * filtered_.head<3>();
-  state.actual_tcp_force = shift_wrench(rotate_spatial_vector(to_base, filtered_ - offset_), -flange_to_tcp);
+  const Vector6 at_flange = rotate_spatial_vector(to_base, filtered_ - offset_);
+  state.actual_tcp_force = shift_wrench(at_flange, -flange_to_tcp);
+  state.reported_tcp_force = reports_force_at_flange(model_, state) ? at_flange : state.actual_tcp_force;
 }
 
 }  // namespace ur_simulator

@@ -9,10 +9,15 @@
 
 namespace ur_simulator {
 
+/// Whether get_tcp_force() and RTDE report the wrench at the flange instead of the TCP, as an e-Series
+/// without an external sensor does (Universal_Robots_ROS2_Driver, pull request 1287 and issue 1849).
+bool reports_force_at_flange(const RobotModel & model, const ControllerState & state);
+
 /// The force/torque sensor at the flange and its signal processing in the controller: noise, weight and
 /// inertia of the load, low-pass filter, payload compensation, zero offset.
 class ForceTorqueSensor {
  public:
+  /// `model` must outlive this object.
   ForceTorqueSensor(const RobotModel & model, std::uint64_t seed);
 
   void zero() { zero_requested_ = true; }
@@ -27,6 +32,7 @@ class ForceTorqueSensor {
   static Vector6 sensor_wrench(const ControllerState & state);
 
   double filter_gain_;
+  const RobotModel & model_;
   std::mt19937_64 random_;
   double force_noise_;
   double torque_noise_;

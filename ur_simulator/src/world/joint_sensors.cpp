@@ -9,6 +9,7 @@ namespace {
 
 constexpr double encoder_step = 2.0 * std::numbers::pi / (1 << 19);  // rad: positions are multiples of it
 constexpr double position_noise = 1.7e-5;                            // rad
+constexpr double acceleration_noise = 0.05;                          // m/s^2 (e-Series)
 
 /// The currents of larger joints are noisier: 27 mA of 150 N m and 7 mA of 28 N m (UR5e), 11 to 27 mA and 9
 /// mA (UR5).
@@ -33,6 +34,7 @@ void JointSensors::step(ControllerState & state)
   const Vector6 position = state.actual.position + position_noise * noise();
   state.measured.position = (position / encoder_step).array().round().matrix() * encoder_step;
   state.measured.current = state.actual.current + current_noise_.cwiseProduct(noise());
+  state.measured.tool_acceleration = state.tool_acceleration + acceleration_noise * noise().head<3>();
   state.measured.tcp_pose = tcp_pose(model_, state.measured.position, state.tcp_offset);
 }
 

@@ -8,13 +8,14 @@
 
 namespace ur_simulator {
 
-/// The encoders and current sensors of the joints, with the resolution and noise of recordings of robots
-/// (docs/internals/compared_with_robots.md). Deterministic for a given seed.
+/// The encoders and current sensors of the joints and the accelerometer in the flange, with the resolution
+/// and noise of recordings of robots (docs/internals/compared_with_robots.md). Deterministic for a given
+/// seed.
 class JointSensors {
  public:
   /// `model` must outlive this object.
   JointSensors(const RobotModel & model, std::uint64_t seed);
-  /// Adds noise to state.measured while the joints have power.
+  /// Adds noise to state.measured while the arm has power.
   void step(ControllerState & state);
 
  private:

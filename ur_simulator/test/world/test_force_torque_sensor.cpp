@@ -35,9 +35,16 @@ TEST(ForceTorqueSensorTest, ReportsTheForceAtTheTcpInTheBaseFrame)
   EXPECT_NEAR(fixture.state.actual_tcp_force[2], 40.0, 0.01);
   EXPECT_LT(fixture.state.actual_tcp_force.tail<3>().norm(), 0.01)
       << "a force at the TCP has no moment about it";
+  EXPECT_NEAR(fixture.state.reported_tcp_force.tail<3>().norm(), 0.1 * 40.0, 0.01)
+      << "an e-Series reports that about the flange";
   // The tool points down: up is -z of the flange, the lever arm is 0.1 m.
   EXPECT_NEAR(fixture.state.ft_raw_wrench[2], -40.0, 0.01);
   EXPECT_NEAR(fixture.state.ft_raw_wrench[4], 0.1 * 40.0, 0.01);
+  fixture.state.external_sensor.enabled = true;
+  fixture.state.external_force_torque = six(0, 0, -7.0, 0, 0, 0);
+  fixture.run(1.0);
+  EXPECT_NEAR((fixture.state.reported_tcp_force - fixture.state.actual_tcp_force).norm(), 0.0, 1e-9)
+      << "unless an external sensor measures it";
 }
 
 TEST(ForceTorqueSensorTest, ReportsTheWeightOfALoadThatIsNotInThePayload)

@@ -17,6 +17,7 @@ constexpr double encoder_step = 2.0 * std::numbers::pi / (1 << 19);
 struct Deviation {
   Vector6 position = Vector6::Zero();
   Vector6 current = Vector6::Zero();
+  Vector3 acceleration = Vector3::Zero();
 };
 
 ControllerState powered_state()
@@ -35,8 +36,10 @@ Deviation deviation_at_rest(const char * model)
     sensors.step(state);
     sum.position += state.measured.position.cwiseAbs2();
     sum.current += state.measured.current.cwiseAbs2();
+    sum.acceleration += (state.measured.tool_acceleration - state.tool_acceleration).cwiseAbs2();
   }
-  return {(sum.position / count).cwiseSqrt(), (sum.current / count).cwiseSqrt()};
+  return {(sum.position / count).cwiseSqrt(), (sum.current / count).cwiseSqrt(),
+          (sum.acceleration / count).cwiseSqrt()};
 }
 
 TEST(JointSensorsTest, ReadingsHaveTheNoiseOfRecordedRobots)
@@ -45,6 +48,7 @@ TEST(JointSensorsTest, ReadingsHaveTheNoiseOfRecordedRobots)
   EXPECT_NEAR(e_series.position[0], 1.8e-5, 2e-6);
   EXPECT_NEAR(e_series.current[0], 0.027, 0.002);
   EXPECT_NEAR(e_series.current[5], 0.007, 0.001);
+  EXPECT_NEAR(e_series.acceleration[2], 0.05, 0.003);
   const Deviation cb3 = deviation_at_rest("ur5");
   EXPECT_NEAR(cb3.current[0], 0.0165, 0.002);
   EXPECT_NEAR(cb3.current[5], 0.008, 0.001);

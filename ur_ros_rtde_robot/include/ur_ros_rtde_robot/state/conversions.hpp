@@ -37,6 +37,10 @@ Vector3 rotate_back(const Vector3 & rotation_vector, const Vector3 & v);
 Vector6 pose_trans(const Vector6 & a, const Vector6 & b);
 Vector6 pose_inverse(const Vector6 & pose);
 
+/// The wrench at the TCP, from that at the flange. Both in the orientation of the frame in which `tcp` is
+/// given.
+Vector6 at_tcp(const Vector6 & wrench_at_flange, const Vector6 & tcp, const Vector6 & tcp_offset);
+
 /// The wrench Sample::actual_tcp_force in the orientation of the TCP; the reference point stays the TCP. If
 /// the rotation of the TCP offset is zero, the robot's default, this is the orientation of the flange frame.
 Vector6 tcp_frame_force(const Sample & sample);

@@ -104,8 +104,11 @@ struct Sample {
 
   /// Pose and velocity of the active TCP in the base frame.
   Vector6 actual_tcp_pose, actual_tcp_speed, target_tcp_pose, target_tcp_speed;
+  Vector6 tcp_offset;  ///< pose of the active TCP in the flange frame; PolyScope 3.12, 5.5.1 and later
   /// Wrench that the environment exerts on the tool, at the TCP, in the orientation of the base frame;
-  /// compensated for the payload.
+  /// compensated for the payload. (RTDE's actual_TCP_force of an e-Series is that at the flange:
+  /// Universal_Robots_ROS2_Driver, pull request 1287.) Without tcp_offset, its
+  /// torque is that of RTDE; with an external sensor, which RTDE reports at the TCP, it is wrong.
   Vector6 actual_tcp_force;
   Vector6 ft_raw_wrench;  ///< of the force/torque sensor, in the flange frame, not compensated; PolyScope 5.9
                           ///< and later

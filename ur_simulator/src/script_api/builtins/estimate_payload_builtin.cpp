@@ -4,6 +4,7 @@
 #include "dynamics/load_estimation.hpp"
 #include "kinematics/forward_kinematics.hpp"
 #include "script_api/robot_context.hpp"
+#include "world/force_torque_sensor.hpp"
 
 namespace ur_simulator::script_api {
 
@@ -72,13 +73,15 @@ void require_different_orientations(const std::vector<Transform> & poses, Argume
   }
 }
 
-LoadMeasurement load_measurement(const ControllerState & state, const Transform & flange,
-                                 const Vector6 & tcp_wrench)
+/// `wrench`: as get_tcp_force() returns it.
+LoadMeasurement load_measurement(const RobotContext & robot, const Transform & flange, const Vector6 & wrench)
 {
+  const ControllerState & state = robot.state();
   const Eigen::Matrix3d to_flange = flange.linear().transpose();
   const Vector3 flange_to_tcp = flange.linear() * state.tcp_offset.head<3>();
+  const bool is_at_flange = reports_force_at_flange(robot.access.model, state);
   return {to_flange * state.gravity,
-          rotate_spatial_vector(to_flange, shift_wrench(tcp_wrench, flange_to_tcp))};
+          rotate_spatial_vector(to_flange, is_at_flange ? wrench : shift_wrench(wrench, flange_to_tcp))};
 }
 
 // The wrenches are those that the active payload does not explain.
@@ -113,7 +116,7 @@ Outcome estimate_payload(RobotContext & robot, Arguments arguments)
   }
   std::vector<LoadMeasurement> measurements;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    measurements.push_back(load_measurement(robot.state(), poses[i], wrenches[i].values));
+    measurements.push_back(load_measurement(robot, poses[i], wrenches[i].values));
   }
   const auto load = estimate_load(measurements);
   return load ? Outcome(payload_of(robot.state().payload, *load))
