@@ -86,16 +86,18 @@ StartResult Arm::speed_joint(const Vector6 & velocity, double acceleration, doub
   return impl_->start_motion(JointSpeedMotion(impl_->model, velocity, acceleration, time));
 }
 
-StartResult Arm::speed_linear(const Vector6 & tcp_twist, double acceleration, double time)
+StartResult Arm::speed_linear(const Vector6 & tcp_twist, double acceleration, double time,
+                              std::optional<double> rotational_acceleration)
 {
-  if (const auto rejection =
-          first_rejection({impl_->check_ready("speedl"), check_finite("speedl", "velocity", tcp_twist),
-                           check_positive("speedl", "acceleration", acceleration),
-                           check_in_range("speedl", "time", time, 0.0, 1e9)})) {
+  const double rotational = rotational_acceleration.value_or(acceleration);
+  if (const auto rejection = first_rejection(
+          {impl_->check_ready("speedl"), check_finite("speedl", "velocity", tcp_twist),
+           check_positive("speedl", "acceleration", acceleration),
+           check_positive("speedl", "aRot", rotational), check_in_range("speedl", "time", time, 0.0, 1e9)})) {
     return tl::unexpected(*rejection);
   }
   return impl_->start_motion(
-      LinearSpeedMotion(impl_->tcp_kinematics(), impl_->setpoint, tcp_twist, acceleration, time));
+      LinearSpeedMotion(impl_->tcp_kinematics(), impl_->setpoint, tcp_twist, acceleration, rotational, time));
 }
 
 StartResult Arm::stop_joint(double deceleration)
@@ -110,17 +112,20 @@ StartResult Arm::stop_joint(double deceleration)
   return impl_->start_motion(JointSpeedMotion::stop(impl_->model, deceleration), true);
 }
 
-StartResult Arm::stop_linear(double deceleration)
+StartResult Arm::stop_linear(double deceleration, std::optional<double> rotational_deceleration)
 {
+  const double rotational = rotational_deceleration.value_or(deceleration);
   if (impl_->in_freedrive()) {
     return skipped_motion_id;
   }
-  if (const auto rejection = first_rejection(
-          {impl_->check_ready("stopl"), check_positive("stopl", "deceleration", deceleration)})) {
+  if (const auto rejection =
+          first_rejection({impl_->check_ready("stopl"), check_positive("stopl", "deceleration", deceleration),
+                           check_positive("stopl", "aRot", rotational)})) {
     return tl::unexpected(*rejection);
   }
-  return impl_->start_motion(
-      LinearSpeedMotion(impl_->tcp_kinematics(), impl_->setpoint, Vector6::Zero(), deceleration, 0.0), true);
+  return impl_->start_motion(LinearSpeedMotion(impl_->tcp_kinematics(), impl_->setpoint, Vector6::Zero(),
+                                               deceleration, rotational, 0.0),
+                             true);
 }
 
 bool Arm::call_complete(MotionId motion) const

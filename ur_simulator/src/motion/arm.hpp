@@ -70,9 +70,11 @@ class Arm {
   StartResult servo_joint(const Vector6 & target, double time, double lookahead, double gain);
   /// speedj, speedl: without a following motion the arm decelerates after `time` s; 0: no time limit.
   StartResult speed_joint(const Vector6 & velocity, double acceleration, double time);
-  StartResult speed_linear(const Vector6 & tcp_twist, double acceleration, double time);
+  /// `rotational_acceleration`, rad/s^2: by default the value of `acceleration`.
+  StartResult speed_linear(const Vector6 & tcp_twist, double acceleration, double time,
+                           std::optional<double> rotational_acceleration = {});
   StartResult stop_joint(double deceleration);
-  StartResult stop_linear(double deceleration);
+  StartResult stop_linear(double deceleration, std::optional<double> rotational_deceleration = {});
 
   /// force_mode(): superposes compliance on every motion of the program until end_force_mode() or
   /// end_program(). A further call changes the settings. Compliance is suspended while the arm stops.

@@ -164,6 +164,17 @@ TEST(SpeedlTest, MovesUntilAnotherMotionStarts)
   EXPECT_EQ(fixture.state.target.velocity.norm(), 0.0);
 }
 
+TEST(SpeedlTest, TurnsWithAnAccelerationOfItsOwn)
+{
+  ScriptFixture fixture;
+  fixture.run("def test():\n speedl([0, 0, 0, 0, 0, 0.5], 0.1, t=1, aRot=5)\n stopl(0.1, aRot=5)\nend");
+  const double rise = fixture.until([&] { return fixture.state.target_tcp_speed[5] > 0.499; });
+  EXPECT_NEAR(rise, 0.1, 0.02);
+  fixture.until([&] { return fixture.state.target_tcp_speed[5] < 0.499; });
+  const double fall = fixture.until([&] { return fixture.state.target_tcp_speed[5] < 1e-3; });
+  EXPECT_NEAR(fall, 0.1, 0.02);
+}
+
 TEST(SpeedjTest, LastsTheGivenTime)
 {
   ScriptFixture fixture;

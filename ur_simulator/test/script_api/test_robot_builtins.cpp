@@ -104,7 +104,7 @@ TEST(KinematicsBuiltinsTest, ForwardAndInverseAgree)
     error_tcp = norm(get_inverse_kin(x6, q, tcp=p[0, 0, 0.2, 0, 0, 0]) - q)
     yes = get_inverse_kin_has_solution(x)
     no = get_inverse_kin_has_solution(p[5, 0, 0, 0, 0, 0])
-    inside = is_within_safety_limits(q) and is_within_safety_limits(x)
+    inside = is_within_safety_limits(q) and is_within_safety_limits(x) and is_within_safety_limits(position=x, qNear=q)
     outside = is_within_safety_limits([100, 0, 0, 0, 0, 0])
     flange = get_actual_tool_flange_pose()
   end)"),
@@ -136,6 +136,20 @@ TEST(DynamicsBuiltinsTest, ReturnMatrices)
   EXPECT_LT(fixture.machine->global("speed")->number().value(), 1e-9);
   EXPECT_EQ(fixture.global("c"), "0");
   EXPECT_EQ(fixture.global("s"), "[6, 6]");
+}
+
+TEST(AnalogInputsTest, HaveThoseOfTheToolAsTwoAndThree)
+{
+  ScriptFixture fixture;
+  fixture.state.io.analog_inputs = {0.25, 0.5};
+  fixture.state.io.tool_analog_inputs = {0.75, 1.0};
+  EXPECT_EQ(fixture.error_of(
+                "def test():\n a = [get_analog_in(0), get_analog_in(1), analog_in[2], get_analog_in(3)]\n"
+                "end"),
+            "");
+  EXPECT_EQ(fixture.global("a"), "[0.25, 0.5, 0.75, 1]");
+  EXPECT_NE(fixture.error_of("def t():\n a = get_analog_in(4)\nend").find("n must be in [0, 3]"),
+            std::string::npos);
 }
 
 TEST(StateBuiltinsTest, ReportForcesAndHistory)

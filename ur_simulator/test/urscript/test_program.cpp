@@ -29,6 +29,25 @@ TEST(MemoryTest, SharedValuesCountOnce)
   EXPECT_EQ(runner.finish(50000), MachineStatus::finished) << runner.machine->error().message;
 }
 
+TEST(NoneTest, IsAValue)
+{
+  ScriptRunner runner("def test():\n def f():\n return None\n end\n f()\n x = 1\nend");
+  EXPECT_EQ(runner.finish(), MachineStatus::finished) << runner.machine->error().message;
+  EXPECT_EQ(runner.global("x"), "1");
+}
+
+TEST(TimeTest, IsThatOfTheProgramOrUtc)
+{
+  ScriptRunner runner(
+      "def test():\n a = time(0)\n sleep(1)\n b = time(0)\n passed = b.sec - a.sec + (b.nanosec - a.nanosec) "
+      "* 1e-9\n "
+      "utc = time(2)\n s = utc.sec\n none = time(1)\nend");
+  EXPECT_EQ(runner.finish(10000), MachineStatus::failed);
+  EXPECT_NE(runner.machine->error().message.find("mode must be 0 (monotonic) or 2 (UTC)"), std::string::npos);
+  EXPECT_NEAR(runner.machine->global("passed")->number().value(), 1.0, 0.01);
+  EXPECT_GT(runner.machine->global("s")->number().value(), 1.7e9);
+}
+
 TEST(BlockingPopupTest, BlocksTheThreadUntilTheOperatorClosesIt)
 {
   ScriptRunner runner("def test():\n popup(\"Ready?\", title=\"Check\", blocking=True)\n x = 1\nend");

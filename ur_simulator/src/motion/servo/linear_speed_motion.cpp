@@ -7,9 +7,11 @@
 namespace ur_simulator {
 
 LinearSpeedMotion::LinearSpeedMotion(const TcpKinematics & kinematics, const Setpoint & start,
-                                     const Vector6 & twist, double acceleration, double time)
+                                     const Vector6 & twist, double acceleration,
+                                     double rotational_acceleration, double time)
     : SpeedMotion(twist, acceleration, time),
       kinematics_(kinematics),
+      acceleration_ratio_(acceleration / rotational_acceleration),
       pose_(kinematics.tcp_pose(start.position)),
       twist_(kinematics.tcp_twist(start))
 {
@@ -18,8 +20,8 @@ LinearSpeedMotion::LinearSpeedMotion(const TcpKinematics & kinematics, const Set
 std::optional<MotionFault> LinearSpeedMotion::advance(const TimeStep & time_step, Setpoint & setpoint)
 {
   begin_cycle(time_step);
-  const Vector6 next = next_velocity(twist_, [](const Vector6 & change) {
-    return std::max(change.head<3>().norm(), change.tail<3>().norm());
+  const Vector6 next = next_velocity(twist_, [this](const Vector6 & change) {
+    return std::max(change.head<3>().norm(), acceleration_ratio_ * change.tail<3>().norm());
   });
   const Vector6 displacement = 0.5 * time_step.duration * (twist_ + next);
   Transform pose = pose_;

@@ -44,6 +44,20 @@ Outcome get_output(RobotContext & robot, Arguments arguments)
   return reader ? Outcome(Value(analog_level(io.analog_outputs[n], is_voltage(io, n)))) : reader.failure();
 }
 
+/// 2 and 3 are the inputs of the tool, "for backwards compatibility".
+Outcome get_any_input(RobotContext & robot, Arguments arguments)
+{
+  ArgumentReader reader(arguments);
+  const std::int32_t n = reader.integer(0, "n");
+  reader.require(n >= 0 && n <= 3, fmt::format("n must be in [0, 3], is {}", n));
+  if (!reader) {
+    return reader.failure();
+  }
+  const Io & io = robot.state().io;
+  const auto & inputs = n < 2 ? io.analog_inputs : io.tool_analog_inputs;
+  return Value(inputs[static_cast<std::size_t>(n % 2)]);
+}
+
 template <std::array<double, 2> Io::* inputs>
 Outcome get_input(RobotContext & robot, Arguments arguments)
 {
@@ -76,7 +90,7 @@ void add_analog_io_builtins(Library & library, const RobotContextPtr & robot)
   add_robot_builtin(library, robot, "set_standard_analog_out", {"n", "f"}, 2, set_output);
   add_robot_builtin(library, robot, "get_analog_out", {"n"}, 1, get_output);
   add_robot_builtin(library, robot, "get_standard_analog_out", {"n"}, 1, get_output);
-  add_robot_builtin(library, robot, "get_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
+  add_robot_builtin(library, robot, "get_analog_in", {"n"}, 1, get_any_input);
   add_robot_builtin(library, robot, "get_standard_analog_in", {"n"}, 1, get_input<&Io::analog_inputs>);
   add_robot_builtin(library, robot, "get_tool_analog_in", {"n"}, 1, get_input<&Io::tool_analog_inputs>);
   add_robot_builtin(library, robot, "set_analog_outputdomain", {"port", "domain"}, 2,

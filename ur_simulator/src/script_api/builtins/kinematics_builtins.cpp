@@ -78,7 +78,8 @@ bool joints_within_limits(const RobotModel & model, const Vector6 & q)
 Outcome within_safety_limits(RobotContext & robot, Arguments arguments)
 {
   ArgumentReader reader(arguments);
-  const Vector6 target_values = reader.vector6(0, "pose");
+  const Vector6 target_values = reader.vector6(0, "position");
+  const Vector6 near = reader.given(1) ? reader.vector6(1, "qNear") : robot.state().target.position;
   if (!reader) {
     return reader.failure();
   }
@@ -86,8 +87,7 @@ Outcome within_safety_limits(RobotContext & robot, Arguments arguments)
   if (!arguments[0].is(urscript::Type::pose)) {
     return Value(joints_within_limits(model, target_values));
   }
-  return Value(get_inverse_kin(model, target_values, robot.state().target.position, robot.state().tcp_offset)
-                   .has_value());
+  return Value(get_inverse_kin(model, target_values, near, robot.state().tcp_offset).has_value());
 }
 
 }  // namespace
@@ -102,7 +102,8 @@ void add_kinematics_builtins(Library & library, const RobotContextPtr & robot)
   add_robot_builtin(library, robot, "get_inverse_kin_has_solution", query_parameters, 1, has_inverse,
                     inverse_cost);
   add_robot_builtin(library, robot, "get_forward_kin", {"q", "tcp"}, 0, forward, 40);
-  add_robot_builtin(library, robot, "is_within_safety_limits", {"pose"}, 1, within_safety_limits,
+  add_robot_builtin(library, robot, "is_within_safety_limits",
+                    {urscript::Parameter("position").formerly("pose"), "qNear"}, 1, within_safety_limits,
                     inverse_cost);
   library.simplify("is_within_safety_limits", "checks joint limits and reach; there are no safety planes");
 }

@@ -19,34 +19,36 @@ Outcome servoj(const RobotContextPtr & robot, Arguments arguments)
   return start_motion(robot, [&](Arm & arm) { return arm.servo_joint(q, time, lookahead, gain); });
 }
 
-using SpeedFunction = StartResult (Arm::*)(const Vector6 & velocity, double acceleration, double time);
-
-/// speedj, speedl.
-Outcome move_at_speed(const RobotContextPtr & robot, Arguments arguments, const char * name,
-                      SpeedFunction move)
+/// speedj, speedl. `name` of the velocity.
+Outcome move_at_speed(const RobotContextPtr & robot, Arguments arguments, const char * name, bool linear)
 {
   ArgumentReader reader(arguments);
   const Vector6 velocity = reader.vector6(0, name);
   const double acceleration = reader.number(1, "a");
   const double time = reader.given(2) ? reader.number(2, "t") : 0.0;
+  const double rotational = linear && reader.given(3) ? reader.number(3, "aRot") : acceleration;
   if (!reader) {
     return reader.failure();
   }
   robot->waypoint = robot->state().target_tcp_pose;
-  return start_motion(robot, [&](Arm & arm) { return (arm.*move)(velocity, acceleration, time); });
+  return start_motion(robot, [&](Arm & arm) {
+    return linear ? arm.speed_linear(velocity, acceleration, time, rotational)
+                  : arm.speed_joint(velocity, acceleration, time);
+  });
 }
 
-using StopFunction = StartResult (Arm::*)(double);
-
-Outcome stop(const RobotContextPtr & robot, Arguments arguments, StopFunction function)
+Outcome stop(const RobotContextPtr & robot, Arguments arguments, bool linear)
 {
   ArgumentReader reader(arguments);
   const double deceleration = reader.number(0, "a");
+  const double rotational = linear && reader.given(1) ? reader.number(1, "aRot") : deceleration;
   if (!reader) {
     return reader.failure();
   }
   robot->waypoint = robot->state().target_tcp_pose;
-  return start_motion(robot, [&](Arm & arm) { return (arm.*function)(deceleration); });
+  return start_motion(robot, [&](Arm & arm) {
+    return linear ? arm.stop_linear(deceleration, rotational) : arm.stop_joint(deceleration);
+  });
 }
 
 }  // namespace
@@ -64,16 +66,16 @@ void add_servo_speed_builtins(Library & library, const RobotContextPtr & robot)
                [robot](CallContext &, Arguments arguments) { return servoj(robot, arguments); }});
   const urscript::Parameter time = urscript::Parameter("t").formerly("t_min");
   library.add({"speedj", {"qd", "a", time}, 2, [robot](CallContext &, Arguments arguments) {
-                 return move_at_speed(robot, arguments, "qd", &Arm::speed_joint);
+                 return move_at_speed(robot, arguments, "qd", false);
                }});
   library.add({"speedl", {"xd", "a", time, "aRot"}, 2, [robot](CallContext &, Arguments arguments) {
-                 return move_at_speed(robot, arguments, "xd", &Arm::speed_linear);
+                 return move_at_speed(robot, arguments, "xd", true);
                }});
   library.add({"stopj", {"a"}, 1, [robot](CallContext &, Arguments arguments) {
-                 return stop(robot, arguments, &Arm::stop_joint);
+                 return stop(robot, arguments, false);
                }});
   library.add({"stopl", {"a", "aRot"}, 1, [robot](CallContext &, Arguments arguments) {
-                 return stop(robot, arguments, &Arm::stop_linear);
+                 return stop(robot, arguments, true);
                }});
 }
 

@@ -100,18 +100,18 @@ Outcome textmsg(CallContext & context, Arguments arguments)
   return Value();
 }
 
-// Mode 0: time since the epoch. Mode 1: simulated time since the program started, the same in every run.
+// Mode 0: monotonic time, here of the program, the same in every run. Mode 2: time since the epoch. (UR
+// script manual, time(); mode 1 is reserved.)
 Outcome time(CallContext & context, Arguments arguments)
 {
   ArgumentReader reader(arguments);
   const std::int32_t mode = reader.integer(0, "mode");
-  reader.require(mode == 0 || mode == 1,
-                 fmt::format("mode must be 0 (UTC) or 1 (since the start), is {}", mode));
+  reader.require(mode == 0 || mode == 2, fmt::format("mode must be 0 (monotonic) or 2 (UTC), is {}", mode));
   if (!reader) {
     return reader.failure();
   }
   const std::chrono::duration<double> utc = std::chrono::system_clock::now().time_since_epoch();
-  const double now = mode == 0 ? utc.count() : context.time;
+  const double now = mode == 0 ? context.time : utc.count();
   const double seconds = std::floor(now);
   Structure result;
   result.members.emplace_back("sec", Value(static_cast<std::int32_t>(seconds)));
@@ -135,6 +135,7 @@ void add_program_builtins(Library & library)
                 {"blocking", Value(false)}},
                1,
                popup});
+  library.add_constant("None", Value());
   library.add({"time", {{"mode", Value(0)}}, 0, time});
   library.add({"request_boolean_from_primary_client", {"message"}, 1, request_value<Type::boolean>});
   library.add({"request_float_from_primary_client", {"message"}, 1, request_value<Type::floating>});

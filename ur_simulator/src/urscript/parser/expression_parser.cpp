@@ -337,6 +337,9 @@ ExpressionPtr ExpressionParser::parse_member_access(ExpressionPtr object)
 {
   auto result = make_node(ExpressionKind::member);
   advance();
+  if (current_.kind == TokenKind::keyword) {  // time().sec
+    current_.kind = TokenKind::name;
+  }
   result->name = expect_name("the name of a member");
   result->operands.push_back(std::move(object));
   if (current_.is("(")) {
