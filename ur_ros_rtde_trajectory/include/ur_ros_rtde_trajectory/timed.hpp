@@ -10,10 +10,11 @@ inline constexpr std::size_t max_timed_waypoints = 100000;
 
 /// Waypoints with given times. All lists that are not empty have the same length.
 struct TimedWaypoints {
-  std::vector<double> times;                       ///< s, any spacing, strictly increasing, the first is 0
+  std::vector<double> times;  ///< s, any spacing, strictly increasing, from 0 to at most max_duration
   std::vector<std::vector<double>> positions;      ///< rad, six values each; the first is where the arm is
   std::vector<std::vector<double>> velocities;     ///< rad/s; may be empty. Zero at both ends
-  std::vector<std::vector<double>> accelerations;  ///< rad/s^2; may be empty; only together with velocities
+  std::vector<std::vector<double>> accelerations;  ///< rad/s^2; may be empty; only together with velocities.
+                                                   ///< At both ends, a step from rest within the jerk limit
 };
 
 /// Performs the input checks of plan_timed without planning: list lengths, finite numbers, times, position

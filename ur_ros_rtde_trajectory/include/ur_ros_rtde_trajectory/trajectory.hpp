@@ -11,6 +11,8 @@ namespace ur_ros_rtde::trajectory {
 
 struct Motion;
 
+inline constexpr double max_duration = 86400.0;  ///< s, of a plan
+
 /// Joint setpoint at one instant of a trajectory.
 struct Point {
   Joints position = Joints::Zero();

@@ -38,7 +38,7 @@ Expected<KinematicCorrection> query_correction(const TcpPath & path, const Arm &
   KinematicCorrection correction;
   correction.add(0.0, start_correction);
   const auto & waypoints = path.waypoints();
-  const std::size_t stride = std::max<std::size_t>(1, waypoints.size() / max_ik_queries);
+  const std::size_t stride = (waypoints.size() + max_ik_queries - 1) / max_ik_queries;
   double last = 0.0;
   for (std::size_t i = (waypoints.size() - 1) % stride; i < waypoints.size(); i += stride) {
     if (stop.stop_requested()) {

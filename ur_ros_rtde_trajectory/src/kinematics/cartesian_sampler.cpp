@@ -13,12 +13,13 @@ namespace {
 
 using trajectory::SampledSegment;
 
-constexpr double max_step = 0.005;           // m along the path
-constexpr double min_step = 2e-6;            // m
-constexpr double max_joint_step = 0.04;      // rad; largest change of a joint between two samples
-constexpr int min_intervals = 8;             // per segment
-constexpr double min_singular_value = 0.01;  // of the Jacobian, rotations scaled by characteristic_length
-constexpr double singular_angle = 0.05;      // rad; distance of a joint from a singularity
+constexpr double max_step = 0.005;            // m along the path
+constexpr double min_step = 2e-6;             // m
+constexpr std::size_t max_samples = 200'000;  // of a path
+constexpr double max_joint_step = 0.04;       // rad; largest change of a joint between two samples
+constexpr int min_intervals = 8;              // per segment
+constexpr double min_singular_value = 0.01;   // of the Jacobian, rotations scaled by characteristic_length
+constexpr double singular_angle = 0.05;       // rad; distance of a joint from a singularity
 
 double smallest_singular_value(Jacobian jacobian)
 {
@@ -60,14 +61,13 @@ Expected<std::vector<SampledSegment>> CartesianSampler::sample_path(const Joints
   std::vector<SampledSegment> segments;
   const std::vector<double> stops = path_.stops();
   Joints q = start;
+  std::size_t left = max_samples;
   for (std::size_t k = 1; k < stops.size(); ++k) {
-    if (stop.stop_requested()) {
-      return failure(ErrorCode::canceled, "planning was canceled");
-    }
-    auto segment = sample_segment(stops[k - 1], stops[k], q, correction);
+    auto segment = sample_segment(stops[k - 1], stops[k], q, correction, left, stop);
     if (!segment) {
       return tl::unexpected(segment.error());
     }
+    left -= segment->positions.size();
     q = segment->positions.back();
     segments.push_back(std::move(*segment));
   }
@@ -75,7 +75,9 @@ Expected<std::vector<SampledSegment>> CartesianSampler::sample_path(const Joints
 }
 
 Expected<SampledSegment> CartesianSampler::sample_segment(double from, double to, const Joints & start,
-                                                          const KinematicCorrection & correction) const
+                                                          const KinematicCorrection & correction,
+                                                          std::size_t max_samples_left,
+                                                          const std::stop_token & stop) const
 {
   Sample sample{from, start};
   SampledSegment segment{{from}, {start}, {}};
@@ -84,6 +86,16 @@ Expected<SampledSegment> CartesianSampler::sample_segment(double from, double to
   }
   double step = std::min(max_step, (to - from) / min_intervals);
   while (sample.u < to) {
+    if (stop.stop_requested()) {
+      return failure(ErrorCode::canceled, "planning was canceled");
+    }
+    if (segment.positions.size() >= max_samples_left) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("the path is too long to be planned at once, more than {} samples {}: send it "
+                      "in parts",
+                      max_samples, describe_position(sample.u)));
+    }
     const auto found = next_sample(sample, to, correction, step);
     if (!found) {
       return tl::unexpected(found.error());

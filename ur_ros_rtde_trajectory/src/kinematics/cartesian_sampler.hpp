@@ -45,7 +45,9 @@ class CartesianSampler {
   };
 
   Expected<trajectory::SampledSegment> sample_segment(double from, double to, const Joints & start,
-                                                      const KinematicCorrection & correction) const;
+                                                      const KinematicCorrection & correction,
+                                                      std::size_t max_samples_left,
+                                                      const std::stop_token & stop) const;
   Expected<Sample> next_sample(const Sample & last, double to, const KinematicCorrection & correction,
                                double & step) const;
   Status check_sample(const Sample & sample) const;

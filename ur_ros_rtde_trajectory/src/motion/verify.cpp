@@ -61,10 +61,12 @@ double max_speed_ratio(const Motion & motion, const TimingLawPiece & piece, int 
 // A piece that covers a large part of a blend needs more points, because the derivatives of the path change.
 int steps_of(const Motion & motion, const TimingLawPiece & piece, double step)
 {
+  constexpr int degree_of_timed_pieces = 5;  // whose parameter is the time
   constexpr double points_per_blend = 200.0;
+  constexpr double max_points = 2000.0;  // of a polynomial, which has few extremes
   const PathPiece & curve = motion.path->pieces[piece.piece];
-  double steps = std::max(6.0, piece.duration / step);
-  if (curve.degree > 3) {
+  double steps = std::clamp(piece.duration / step, 6.0, max_points);
+  if (curve.degree > degree_of_timed_pieces) {
     const double covered = (piece.at(piece.end()).u - piece.at(piece.start).u) / curve.length;
     steps = std::max(steps, points_per_blend * std::min(covered, 1.0));
   }
@@ -163,28 +165,49 @@ Utilization max_utilization(const Motion & motion, std::size_t begin, const Limi
   return largest;
 }
 
+std::optional<LimitViolation> first_violation(const Motion & motion, const TimingLawPiece & piece,
+                                              const Limits & limits, double step, Utilization & use)
+{
+  const int steps = steps_of(motion, piece, step);
+  for (int k = 0; k <= steps; ++k) {
+    const double time = piece.start + piece.duration * k / steps;
+    const Point point = point_at(motion, piece, time);
+    use.velocity = std::max(use.velocity, (point.velocity.abs() / limits.velocity).maxCoeff());
+    use.acceleration =
+        std::max(use.acceleration, (point.acceleration.abs() / limits.acceleration).maxCoeff());
+    use.jerk = std::max(use.jerk, (point.jerk.abs() / limits.jerk).maxCoeff());
+    if (auto excess = violation_at(point, limits, time)) {
+      return excess;
+    }
+    const double share = piece.at(time).v / motion.path->pieces[piece.piece].max_speed;
+    if (share > 1.0 + rounding) {
+      return LimitViolation{Quantity::path_speed, 0, time, share, 1.0};
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<LimitViolation> first_violation(const Motion & motion, const Limits & limits, double step,
                                               Utilization & use)
 {
   for (const TimingLawPiece & piece : motion.timing) {
-    const int steps = steps_of(motion, piece, step);
-    for (int k = 0; k <= steps; ++k) {
-      const double time = piece.start + piece.duration * k / steps;
-      const Point point = point_at(motion, piece, time);
-      use.velocity = std::max(use.velocity, (point.velocity.abs() / limits.velocity).maxCoeff());
-      use.acceleration =
-          std::max(use.acceleration, (point.acceleration.abs() / limits.acceleration).maxCoeff());
-      use.jerk = std::max(use.jerk, (point.jerk.abs() / limits.jerk).maxCoeff());
-      if (auto excess = violation_at(point, limits, time)) {
-        return excess;
-      }
-      const double share = piece.at(time).v / motion.path->pieces[piece.piece].max_speed;
-      if (share > 1.0 + rounding) {
-        return LimitViolation{Quantity::path_speed, 0, time, share, 1.0};
-      }
+    if (auto excess = first_violation(motion, piece, limits, step, use)) {
+      return excess;
     }
   }
   return std::nullopt;
+}
+
+Status check_duration(const Motion & motion)
+{
+  if (motion.duration() <= max_duration) {
+    return {};
+  }
+  return failure(
+      ErrorCode::invalid_goal,
+      fmt::format("the motion would take {:.6g} s, at most {:.0f} s are possible: make it faster, or "
+                  "send it in parts",
+                  motion.duration(), max_duration));
 }
 
 std::string describe(const LimitViolation & excess, std::size_t waypoint)

@@ -46,6 +46,13 @@ Utilization max_utilization(const Motion & motion, std::size_t begin, const Limi
 std::optional<LimitViolation> first_violation(const Motion & motion, const Limits & limits, double step,
                                               Utilization & use);
 
+/// The same for one piece.
+std::optional<LimitViolation> first_violation(const Motion & motion, const TimingLawPiece & piece,
+                                              const Limits & limits, double step, Utilization & use);
+
+/// Fails if the motion is longer than max_duration.
+Status check_duration(const Motion & motion);
+
 /// Describes a violation: "velocity of elbow_joint is 3.2 rad/s at 1.25 s (after waypoint 7), its limit 3.14
 /// rad/s".
 std::string describe(const LimitViolation & excess, std::size_t waypoint);

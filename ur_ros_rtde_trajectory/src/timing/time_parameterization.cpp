@@ -18,6 +18,9 @@ Status verify_and_slow(Motion & motion, const Limits & limits)
         "no motion through these waypoints was found: leave out waypoints that nearly coincide, or "
         "set blend_tolerance to 0");
   }
+  if (Status possible = check_duration(motion); !possible) {
+    return possible;
+  }
   for (int round = 0;; ++round) {
     Utilization use;
     const auto excess = first_violation(motion, limits, verification_step, use);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "motion/verify.hpp"
 #include "path/path_builder.hpp"
 #include "timing/time_parameterization.hpp"
 #include "trajectory/check_positions.hpp"
@@ -127,6 +128,9 @@ Expected<Trajectory> plan_path(const std::vector<Joints> & waypoints, const Limi
   }
   if (options.speed_fraction < 1.0) {
     (*motion)->stretch(1.0 / options.speed_fraction);
+  }
+  if (Status possible = check_duration(**motion); !possible) {
+    return tl::unexpected(possible.error());
   }
   return Trajectory(std::move(*motion));
 }

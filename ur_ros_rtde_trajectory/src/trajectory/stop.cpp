@@ -62,6 +62,16 @@ Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
   return result;
 }
 
+// False also if the deadline has passed.
+bool is_within(const Limits & limits, const Motion & motion, std::chrono::steady_clock::time_point deadline)
+{
+  Utilization use;
+  return std::none_of(motion.timing.begin(), motion.timing.end(), [&](const TimingLawPiece & piece) {
+    return std::chrono::steady_clock::now() > deadline ||
+           first_violation(motion, piece, limits, verification_step, use);
+  });
+}
+
 // Finds the fastest braking that keeps the limits everywhere. A larger reserve reduces violations between the
 // moments that the search checks.
 std::optional<Motion> find_braking(const Motion & plan, double plan_time, const Limits & limits,
@@ -73,8 +83,7 @@ std::optional<Motion> find_braking(const Motion & plan, double plan_time, const 
       continue;
     }
     Motion motion = braking_motion(plan, *scaling);
-    Utilization use;
-    if (!first_violation(motion, limits, verification_step, use)) {
+    if (is_within(limits, motion, deadline)) {
       return motion;
     }
   }

@@ -37,6 +37,13 @@ Status check_times(const std::vector<double> & times)
         ErrorCode::invalid_goal,
         fmt::format("times[0] is {} s: the first must be 0, with the position where the arm is", times[0]));
   }
+  if (!(times.back() <= max_duration)) {
+    return failure(
+        ErrorCode::invalid_goal,
+        fmt::format("times[{}] is {:.6g} s: times begin at 0 and end at {:.0f} s at the latest: send "
+                    "the trajectory in parts",
+                    times.size() - 1, times.back(), max_duration));
+  }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || !(times[i] - times[i - 1] >= shortest_step)) {
       return failure(
@@ -110,8 +117,29 @@ Status check_rest(std::vector<Joints> & velocities)
   return {};
 }
 
+// The arm is at rest before and after the trajectory, so that an acceleration at an end is a step.
+Status check_steps(const std::vector<Joints> & accelerations, const Limits & limits)
+{
+  constexpr double cycle = 0.002;  // s
+  for (const bool last : {false, true}) {
+    for (int j = 0; j < joint_count; ++j) {
+      const double step = (last ? accelerations.back() : accelerations.front())[j];
+      if (!(std::abs(step) <= limits.jerk[j] * cycle)) {
+        return failure(
+            ErrorCode::invalid_goal,
+            fmt::format(
+                "accelerations: {} of {} is {:.6g} rad/s^2, a step from rest that needs a jerk of {:.6g} "
+                "rad/s^3, its limit is {:.6g} rad/s^3: begin and end with 0, or raise the limit",
+                last ? "the last" : "the first", joint_name(j), step, std::abs(step) / cycle,
+                limits.jerk[j]));
+      }
+    }
+  }
+  return {};
+}
+
 // Reads the given lists. Lists that are not given stay empty.
-Expected<Knots> read_given(const TimedWaypoints & waypoints)
+Expected<Knots> read_given(const TimedWaypoints & waypoints, const Limits & limits)
 {
   if (auto status = check_times(waypoints.times); !status) {
     return tl::unexpected(status.error());
@@ -139,13 +167,16 @@ Expected<Knots> read_given(const TimedWaypoints & waypoints)
   }
   if (status && !waypoints.accelerations.empty()) {
     status = read("accelerations", waypoints.accelerations, knots.a);
+    if (status) {
+      status = check_steps(knots.a, limits);
+    }
   }
   return status.map([&knots] { return std::move(knots); });
 }
 
-Expected<Knots> read_knots(const TimedWaypoints & waypoints)
+Expected<Knots> read_knots(const TimedWaypoints & waypoints, const Limits & limits)
 {
-  return read_given(waypoints).map([](Knots knots) {
+  return read_given(waypoints, limits).map([](Knots knots) {
     if (knots.v.empty()) {
       knots.v = spline_velocities(knots);
     }
@@ -197,7 +228,7 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
   if (auto status = check(limits); !status) {
     return status;
   }
-  const auto knots = read_given(waypoints);
+  const auto knots = read_given(waypoints, limits);
   if (!knots) {
     return tl::unexpected(knots.error());
   }
@@ -228,7 +259,7 @@ Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits &
   if (auto status = check(limits); !status) {
     return tl::unexpected(status.error());
   }
-  auto knots = read_knots(waypoints);
+  auto knots = read_knots(waypoints, limits);
   if (!knots) {
     return tl::unexpected(knots.error());
   }

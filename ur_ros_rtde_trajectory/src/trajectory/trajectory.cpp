@@ -92,6 +92,9 @@ std::size_t Trajectory::waypoint_at(double time) const
 
 Trajectory Trajectory::slowed(double fraction) const
 {
+  if (fraction == 1.0) {
+    return *this;
+  }
   auto copy = std::make_shared<Motion>(*motion_);
   copy->stretch(1.0 / fraction);
   return Trajectory(std::move(copy));

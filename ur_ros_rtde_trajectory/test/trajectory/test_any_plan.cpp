@@ -60,11 +60,16 @@ TEST(AnyPlanTest, HasAMotionThroughCornersWithTinyBlends)
 
 TEST(AnyPlanTest, IsCanceledWithinASegment)
 {
-  const RandomPlan slow = extreme_plan(38);  // several seconds for one segment
-  PathOptions options = slow.options;
+  std::vector<Joints> waypoints;  // of one segment
+  for (std::size_t i = 0; i < max_waypoints; ++i) {
+    const double angle = 0.001 * static_cast<double>(i);
+    waypoints.push_back({std::sin(angle), std::cos(1.3 * angle), 0.0, 0.0, 0.0, 0.0});
+  }
+  const Limits limits = make_limits(arm_limits("ur10e").value());
+  PathOptions options;
   std::stop_source stop;
   options.stop = stop.get_token();
-  auto plan = std::async(std::launch::async, [&] { return plan_path(slow.waypoints, slow.limits, options); });
+  auto plan = std::async(std::launch::async, [&] { return plan_path(waypoints, limits, options); });
   ASSERT_EQ(plan.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
   const std::clock_t begin = std::clock();
   stop.request_stop();

@@ -258,6 +258,22 @@ TEST(ShortLineTest, DoesNotSlowDownTheMotionBetweenTwoBlends)
   EXPECT_LT(plan->duration(), 1.75);
 }
 
+TEST(LongMotionTest, IsRejectedWithItsDuration)
+{
+  Limits limits;
+  limits.velocity.setConstant(1e-4);
+  limits.acceleration.setConstant(1.0);
+  limits.jerk.setConstant(10.0);
+  const std::vector<Joints> there{Joints::Constant(-5.0), Joints::Constant(5.0)};
+  const auto too_long = plan_path(there, limits);
+  ASSERT_FALSE(too_long);
+  EXPECT_NE(too_long.error().message.find("the motion would take 1000"), std::string::npos)
+      << too_long.error().message;
+  limits.velocity.setConstant(1e-3);
+  EXPECT_TRUE(plan_path(there, limits));
+  EXPECT_FALSE(plan_path(there, limits, {.speed_fraction = 0.1}));
+}
+
 TEST(ManyWaypointsTest, PlansTheMaximumNumberOfWaypoints)
 {
   std::vector<Joints> waypoints;

@@ -16,7 +16,7 @@ Limits limits()
   result.position_max.setConstant(6.3);
   result.velocity.setConstant(3.0);
   result.acceleration.setConstant(8.0);
-  result.jerk.setConstant(400.0);
+  result.jerk.setConstant(700.0);  // the accelerations of samples(2) begin and end with steps of up to 1.24
   return result;
 }
 
@@ -149,6 +149,12 @@ INSTANTIATE_TEST_SUITE_P(
         InvalidWaypoints{"TimeNan", [](TimedWaypoints & w) { w.times[4] = nan_value; }, "times[4] is nan"},
         InvalidWaypoints{"TimeInfinite", [](TimedWaypoints & w) { w.times.back() = INFINITY; },
                          "times[9] is inf"},
+        InvalidWaypoints{"TooLong", [](TimedWaypoints & w) { w.times.back() = 5e6; },
+                         "times[9] is 5e+06 s: times begin at 0 and end at 86400 s at the latest"},
+        InvalidWaypoints{"AccelerationAtTheStart",
+                         [](TimedWaypoints & w) { w.accelerations.front()[2] = -4.0; },
+                         "the first of elbow_joint is -4 rad/s^2, a step from rest that needs a jerk of 2000 "
+                         "rad/s^3, its limit is 700 rad/s^3"},
         InvalidWaypoints{"PositionMissing", [](TimedWaypoints & w) { w.positions.pop_back(); },
                          "positions has 9 entries"},
         InvalidWaypoints{"VelocityMissing", [](TimedWaypoints & w) { w.velocities.pop_back(); },
@@ -168,6 +174,45 @@ INSTANTIATE_TEST_SUITE_P(
         InvalidWaypoints{"BeyondPositionLimit", [](TimedWaypoints & w) { w.positions.back()[0] = 7.0; },
                          "of shoulder_pan_joint is"}),
     [](const auto & bad) { return bad.param.name; });
+
+TEST(PlanTimedTest, PlansTheLongestListButNoLongerOne)
+{
+  TimedWaypoints waypoints;
+  for (std::size_t i = 0; i <= max_timed_waypoints; ++i) {
+    waypoints.times.push_back(0.008 * static_cast<double>(i));
+    const double turns = 2.0 * static_cast<double>(i) / static_cast<double>(max_timed_waypoints - 1);
+    waypoints.positions.emplace_back(6, 1.0 - std::cos(2.0 * M_PI * turns));
+  }
+  EXPECT_NE(plan_timed(waypoints, limits()).error().message.find("at most 100000"), std::string::npos);
+  waypoints.times.pop_back();
+  waypoints.positions.pop_back();
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_NEAR(plan->duration(), 800.0, 0.01);
+}
+
+TEST(PlanTimedTest, FindsViolationsInThePieceOfHours)
+{
+  TimedWaypoints waypoints;
+  waypoints.times = {0.0, 1.0, 9000.0};
+  waypoints.positions = {std::vector<double>(6, 0.0), std::vector<double>(6, 0.5),
+                         std::vector<double>(6, 0.0)};
+  waypoints.velocities = {std::vector<double>(6, 0.0), std::vector<double>(6, 1.0),
+                          std::vector<double>(6, 0.0)};
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().message.find("position of shoulder_pan_joint"), std::string::npos)
+      << plan.error().message;
+}
+
+TEST(PlanTimedTest, RejectsWhatIsNoNumberAnyMore)
+{
+  TimedWaypoints waypoints = samples(1);
+  waypoints.velocities[3][1] = 1e308;
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+}
 
 TEST(PlanTimedTest, SingleWaypointYieldsZeroDuration)
 {
