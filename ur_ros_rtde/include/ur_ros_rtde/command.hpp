@@ -168,8 +168,14 @@ Outcome Run::call(const std::string & command, const typename A::Goal & goal, ty
 {
   CommandPlugin * const plugin = find_command(command);
   auto * const typed = dynamic_cast<Command<A> *>(plugin);
-  return typed != nullptr ? execute(typed->called(goal, result))
-                          : Outcome(not_callable(command, plugin != nullptr));
+  if (typed == nullptr) {
+    return not_callable(command, plugin != nullptr);
+  }
+  const Outcome outcome = execute(typed->called(goal, result));
+  if constexpr (requires { result.final_state; }) {
+    result.final_state = arm_state();
+  }
+  return outcome;
 }
 
 }  // namespace ur_ros_rtde

@@ -15,6 +15,9 @@ using std::chrono::milliseconds;
 
 /// Time for preempted goals to end: longer than a stop that falls back to the dashboard server.
 constexpr milliseconds preemption_timeout{6000};
+/// For a holder that brakes along its path, and is preempted by a goal that waits no longer than this and a
+/// stop.
+constexpr milliseconds preempted_braking_timeout{3500};
 /// For the commanded deceleration during a shutdown.
 constexpr milliseconds shutdown_stop_timeout{1500};
 /// For a holder that brakes along its path within its own limits, which may be as gentle as it likes.
@@ -179,6 +182,9 @@ void CommandGoal::on_stop(const Error & why)
   const std::lock_guard lock(lease_mutex_);
   StopOptions options = stop_options_;
   milliseconds braking = braking_timeout;
+  if (why.code == ErrorCode::preempted) {
+    braking = preempted_braking_timeout;
+  }
   if (why.code == ErrorCode::shutdown) {
     options.timeout = shutdown_stop_timeout;
     braking = shutdown_stop_timeout;

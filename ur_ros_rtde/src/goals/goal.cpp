@@ -38,8 +38,9 @@ void Goal::stop(const Error & why)
 {
   const std::lock_guard lock(mutex_);
   if (!stop_request_->request(why)) {
-    if (accepted_ && why.code == ErrorCode::shutdown) {
-      on_stop(why);  // has less time than what it was told before
+    const bool has_less_time = why.code == ErrorCode::shutdown || why.code == ErrorCode::preempted;
+    if (accepted_ && has_less_time && stop_request_->reason()->code != ErrorCode::shutdown) {
+      on_stop(why);
     }
     return;
   }

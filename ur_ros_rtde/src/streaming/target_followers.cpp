@@ -17,6 +17,7 @@ constexpr double periods_ahead = 1.5;
 constexpr double standstill_speed = 1e-3;       // m/s, rad/s, of a twist
 constexpr double standstill_step = 1e-4;        // m, rad, from one target to the next
 constexpr double standstill_distance = 1e-2;    // m, rad, of a target from the arm
+constexpr double max_cycles_of_a_pose = 2.0;    // by which it advances after a gap: servoL does not bridge it
 constexpr double highest_linear_speed = 3.0;    // m/s
 constexpr double highest_angular_speed = 3.14;  // rad/s
 
@@ -223,7 +224,7 @@ class PoseFollower : public TargetFollower {
       return safe;
     }
     Vector6 part = displacement_;
-    const double share = line_.advance(elapsed);
+    const double share = line_.advance(std::min(elapsed, max_cycles_of_a_pose * cycle_));
     for (double & value : part) {
       value *= share;
     }
@@ -259,6 +260,15 @@ class TwistFollower : public TargetFollower {
 
   Status set_target(const StreamTarget & target, double) override
   {
+    const double linear = std::hypot(target.values[0], target.values[1], target.values[2]);
+    const double angular = std::hypot(target.values[3], target.values[4], target.values[5]);
+    if (!(linear <= highest_linear_speed && angular <= highest_angular_speed)) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("the target velocity is {:.3g} m/s and {:.3g} rad/s, at most {} m/s and {} rad/s "
+                      "are possible: use a lower one",
+                      linear, angular, highest_linear_speed, highest_angular_speed));
+    }
     target_ = target;
     return {};
   }

@@ -4,14 +4,15 @@
 #include <utility>
 
 #include "ur_ros_rtde/streaming.hpp"
+#include "ur_ros_rtde_robot/motion/setpoint_clock.hpp"
 
 namespace ur_ros_rtde {
 namespace {
 
 /// Weight of the newest interval in the smoothed period.
 constexpr double period_weight = 0.2;
-/// Of the control period: a longer gap between two packages counts as this long.
-constexpr double max_cycles = 2.0;
+/// A longer gap between two packages counts as this many cycles.
+constexpr double max_cycles = SetpointClock::bridged_cycles;
 /// The default of Locked.
 constexpr std::chrono::milliseconds max_control_timeout{5000};
 

@@ -18,8 +18,10 @@ using trajectory::Joints;
 
 constexpr double default_goal_tolerance = 0.01;      // rad
 constexpr double default_goal_time_tolerance = 2.0;  // s
+constexpr double longest_goal_time = 86400.0;        // s, without a tolerance
 constexpr double start_tolerance = 0.02;             // rad; MoveIt checks its own, too
 constexpr double max_start_delay = 60.0;             // s from now
+constexpr std::chrono::minutes longest_wait{10};     // for the start, of a clock that is slower than this one
 constexpr double velocity_reserve = 1.05;  // a spline between points at the limit exceeds it slightly
 constexpr auto feedback_period = std::chrono::milliseconds(50);
 
@@ -98,8 +100,7 @@ class FollowJointTrajectory : public Command<Action> {
   }
   void check_time(const Goal & goal, Check & check) const;
   Expected<PlannedTrajectory> plan(const Goal & goal, const Joints & start) const;
-  Status check_setpoint(const Goal & goal, Run & run, const Tolerances & path,
-                        const trajectory::Trajectory & trajectory, const StreamState & state) const;
+  Outcome wait_for_start(const Goal & goal, Run & run) const;
   void publish_feedback_at(const Goal & goal, Run & run, std::size_t index, const StreamState & state) const;
   static Outcome wait_for_arrival(const Goal & goal, Run & run, const Tolerances & tolerances,
                                   const Joints & end);
@@ -183,10 +184,6 @@ Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
   if (goal.trajectory.points.empty()) {
     return Outcome::success("the trajectory is empty: the arm is at rest");
   }
-  const double wait = std::max(0.0, seconds_until(goal.trajectory.header.stamp));
-  if (auto stop_reason = run.sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(wait * 1e9)))) {
-    return *stop_reason;
-  }
   const auto & names = goal.trajectory.joint_names;
   const auto path =
       Tolerances::read("path_tolerance", goal.path_tolerance, names, std::numeric_limits<double>::infinity());
@@ -202,40 +199,36 @@ Outcome FollowJointTrajectory::run(const Goal & goal, Run & run)
   execution.on_planned = [&](const trajectory::Trajectory & plan) {
     last = plan.sample(plan.duration()).position;
   };
+  execution.wait_for_start = [&] { return wait_for_start(goal, run); };
+  auto next_feedback = std::chrono::steady_clock::now();
   execution.on_setpoint = [&](const trajectory::Trajectory & plan, const StreamState & state) {
-    return check_setpoint(goal, run, *path, plan, state);
+    run.progress(plan.progress(state.time));
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_feedback) {
+      next_feedback = now + feedback_period;
+      publish_feedback_at(goal, run, std::min(plan.waypoint_at(state.time) + 1, plan.waypoint_count() - 1),
+                          state);
+    }
+    return path->check(state.position_error, state.velocity_error);
   };
   execution.wait_for_arrival = [&] { return wait_for_arrival(goal, run, *end, last); };
   return execute(run, execution).outcome;
 }
 
-Status FollowJointTrajectory::check_setpoint(const Goal & goal, Run & run, const Tolerances & path,
-                                             const trajectory::Trajectory & trajectory,
-                                             const StreamState & state) const
+/// In ROS time, which may pass at another rate than that of this host.
+Outcome FollowJointTrajectory::wait_for_start(const Goal & goal, Run & run) const
 {
-  run.progress(trajectory.progress(state.time));
-  publish_feedback_at(
-      goal, run, std::min(trajectory.waypoint_at(state.time) + 1, trajectory.waypoint_count() - 1), state);
-  Status held = path.check(state.position_error, state.velocity_error);
-  if (!held) {
-    run.result().error_code = Result::PATH_TOLERANCE_VIOLATED;
-  }
-  return held;
+  return run.expect([&] { return seconds_until(goal.trajectory.header.stamp) <= 0.0; }, longest_wait,
+                    "the time of trajectory.header.stamp has not come");
 }
 
 void FollowJointTrajectory::publish_feedback_at(const Goal & goal, Run & run, std::size_t index,
                                                 const StreamState & state) const
 {
   Feedback & feedback = run.feedback();
-  const auto now = host_->node().now();
-  if (seconds(now) - seconds(feedback.header.stamp) <
-      std::chrono::duration<double>(feedback_period).count()) {
-    return;
-  }
   const auto order = joint_order(goal.trajectory.joint_names);
   const Joints position = Eigen::Map<const Joints>(state.sample.actual_q.data());
   const Joints velocity = Eigen::Map<const Joints>(state.sample.actual_qd.data());
-  feedback.header.stamp = now;
+  feedback.header.stamp = host_->node().now();
   feedback.joint_names = goal.trajectory.joint_names;
   feedback.desired = to_point(*order, state.time, state.desired.position, state.desired.velocity);
   feedback.actual = to_point(*order, state.time, position, velocity);
@@ -249,7 +242,7 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
                                                 const Joints & end)
 {
   const double given = seconds(goal.goal_time_tolerance);
-  const double limit = given > 0.0 ? given : default_goal_time_tolerance;
+  const double limit = given > 0.0 ? given : given < 0.0 ? longest_goal_time : default_goal_time_tolerance;
   Status held;
   const auto arrived = [&] {
     const Sample sample = run.state();
@@ -273,10 +266,12 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
 
 void FollowJointTrajectory::fill_result(const Outcome & outcome, Result & result) const
 {
-  if (outcome) {
+  if (outcome || outcome.code() == ErrorCode::canceled) {
     result.error_code = Result::SUCCESSFUL;
-  } else if (result.error_code == Result::SUCCESSFUL && outcome.code() != ErrorCode::canceled) {
+  } else if (outcome.code() != ErrorCode::not_reached) {
     result.error_code = Result::INVALID_GOAL;
+  } else if (result.error_code != Result::GOAL_TOLERANCE_VIOLATED) {
+    result.error_code = Result::PATH_TOLERANCE_VIOLATED;
   }
   result.error_string = outcome.message();
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <future>
 
 #include "ur_ros_rtde_trajectory/plan.hpp"
@@ -84,11 +85,17 @@ ExecutionResult execute(Run & run, const Execution & execution)
     return {approach.error(), 0.0};
   }
   execution.on_planned(plan->trajectory);
+  if (Outcome begins = execution.wait_for_start(); !begins) {
+    return {begins, 0.0};
+  }
+  double tracking_error = 0.0;  // of the approach
   if (*approach) {
     ServoStream stream(run, execution.servo,
                        [](const Trajectory &, const StreamState &) { return Status(); });
-    if (Outcome approached = stream.execute(**approach, plan->limits); !approached) {
-      return {approached, stream.max_tracking_error()};
+    const Outcome approached = stream.execute(**approach, plan->limits);
+    tracking_error = stream.max_tracking_error();
+    if (!approached) {
+      return {approached, tracking_error};
     }
   }
   ServoStream stream(run, execution.servo, execution.on_setpoint);
@@ -96,7 +103,7 @@ ExecutionResult execute(Run & run, const Execution & execution)
   if (outcome) {
     outcome = execution.wait_for_arrival ? execution.wait_for_arrival() : stream.finish();
   }
-  return {outcome, stream.max_tracking_error()};
+  return {outcome, std::max(tracking_error, stream.max_tracking_error())};
 }
 
 }  // namespace ur_ros_rtde

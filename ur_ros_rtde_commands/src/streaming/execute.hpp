@@ -23,6 +23,8 @@ struct Execution {
   double speed_fraction = 1.0;    ///< of the approach and of the trajectory
   /// Called once after planning, before any motion.
   std::function<void(const trajectory::Trajectory &)> on_planned = [](const trajectory::Trajectory &) {};
+  /// Waits, after planning, for the moment at which the motion begins.
+  std::function<Outcome()> wait_for_start = [] { return Outcome::success(); };
   /// Called after each setpoint. A failure ends the goal.
   ServoStream::SetpointCallback on_setpoint = [](const trajectory::Trajectory &, const StreamState &) {
     return Status();

@@ -81,6 +81,9 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
     if (Status sent = send(plan, limits, time_scaling); !sent) {
       return sent;
     }
+    if (Status going_on = on_setpoint_(plan, state_); !going_on) {
+      return going_on;
+    }
   }
   return Outcome::success();
 }
@@ -93,9 +96,9 @@ void ServoStream::add_elapsed(double before)
 Status ServoStream::send(const Trajectory & plan, const Limits & limits, const TimeScaling & time_scaling)
 {
   state_.time = std::min(time_scaling.time(), plan.duration());
-  state_.desired = plan.sample(state_.time);
+  state_.desired = scaled(plan.sample(state_.time), time_scaling);
   const ServoParameters & servo = settings_.parameters;
-  const Joints setpoint = servo_setpoint(scaled(state_.desired, time_scaling), servo, limits);
+  const Joints setpoint = servo_setpoint(state_.desired, servo, limits);
   std::copy(setpoint.begin(), setpoint.end(), target_.begin());
   run_.control()->servoJ(target_, 0.0, 0.0, cycle_, servo.lookahead_time, servo.gain, clock_.time());
   update_tracking_error();
@@ -105,7 +108,7 @@ Status ServoStream::send(const Trajectory & plan, const Limits & limits, const T
                                "max_tracking_error is {:.4f} rad: check for obstacles and a low gain",
                                state_.tracking_error, state_.time, settings_.max_tracking_error));
   }
-  return on_setpoint_(plan, state_);
+  return {};
 }
 
 void ServoStream::update_tracking_error()
@@ -168,6 +171,7 @@ void ServoStream::follow(const Run::Braking & braking, const Trajectory & stop, 
       return;
     }
     braking.sent();
+    (void)on_setpoint_(stop, state_);  // the goal ends already
   }
 }
 
@@ -180,6 +184,7 @@ void ServoStream::slow_down(const Run::Braking & braking, const Trajectory & pla
       return;
     }
     braking.sent();
+    (void)on_setpoint_(plan, state_);
   }
 }
 

@@ -18,8 +18,8 @@ struct ServoSettings {
 
 /// The state of the stream after each setpoint.
 struct StreamState {
-  double time = 0.0;  ///< s since the start of the trajectory
-  trajectory::Point desired;
+  double time = 0.0;    ///< s since the start of the trajectory
+  JointMotion desired;  ///< at the rate of the time axis: slower than the plan if the robot is
   Sample sample;
   /// Desired minus actual value. The setpoints make the arm follow the plan without delay. On a robot that is
   /// slower, it is compared with the nearest desired position of the last lookahead_time + 0.1 s.
@@ -32,7 +32,7 @@ struct StreamState {
 /// setpoint carries its time in cycles of the controller, with which the control program bridges late ones.
 class ServoStream {
  public:
-  /// Called after each setpoint. A failure ends the stream.
+  /// Called after each setpoint. A failure ends the stream, unless it brakes already.
   using SetpointCallback = std::function<Status(const trajectory::Trajectory &, const StreamState &)>;
 
   ServoStream(Run & run, ServoSettings settings, SetpointCallback on_setpoint);

@@ -27,7 +27,8 @@ class CallsMoveJRelative : public Command<SendScript> {
     MoveJRelative::Result result;
     const Outcome outcome = run.call<MoveJRelative>(goal.script, there, result);
     if (outcome) {
-      run.result().output = {result.success ? "success" : "failure", result.message};
+      run.result().output = {result.success ? "success" : "failure", result.message,
+                             std::to_string(result.final_state.joint_positions[5])};
     }
     MoveJRelative::Goal back;
     back.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, -0.1};

@@ -42,7 +42,7 @@ def test_a_called_command_moves_the_arm_and_returns_its_result(robot, simulator)
     start = wrist(simulator)
     result = call(robot, "move_j_relative").succeeded(20.0)
     assert wrist(simulator) == pytest.approx(start + 0.2 - 0.1, abs=0.005)
-    assert result.output[0] == "success"
+    assert result.output[0] == "success" and float(result.output[2]) == pytest.approx(start + 0.2, abs=0.005)
 
 
 @pytest.mark.parametrize("name, code, text", [

@@ -108,6 +108,45 @@ def test_a_goal_tolerance_violation_aborts_the_goal(robot):
     assert "0.10 s after the end" in result.error_string
 
 
+def test_velocity_tolerance_and_feedback_are_those_of_the_slower_motion(robot, simulator):
+    simulator.control("speed_slider", fraction=0.4)
+    start = simulator.state()["actual"]["position"][0]
+    goal = send(robot, *planned_points(home_plus(0.6), 2.4), path_tolerance=[tolerance(JOINTS[0], 0.0, 0.15)])
+    status, result = goal.wait_for_result(30.0)
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
+    assert simulator.state()["actual"]["position"][0] == pytest.approx(start + 0.6, abs=0.01)
+    fastest = max(goal.feedback, key=lambda feedback: feedback.desired.velocities[0])
+    assert fastest.desired.velocities[0] == pytest.approx(0.4 * 1.875 * 0.6 / 2.4, rel=0.2), "the plan has 2.5 times as much"
+
+
+def test_a_goal_that_is_canceled_has_no_error_of_its_tolerances(robot, simulator):
+    goal = send(robot, *planned_points(home_plus(1.0), 4.0), path_tolerance=[tolerance(JOINTS[0], 0.0, 0.15)])
+    wait_for(lambda: len(goal.feedback) > 10, 10.0, "motion")
+    goal.cancel()
+    status, result = goal.wait_for_result(10.0)
+    assert status == GoalStatus.STATUS_CANCELED and result.error_code == Result.SUCCESSFUL, result.error_string
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "standstill")
+
+
+def test_a_negative_goal_time_tolerance_is_no_limit(robot, simulator):
+    goal = send(robot, *planned_points(home_plus(0.2)), goal_tolerance=[tolerance(JOINTS[0], 1e-9)], goal_time_tolerance=Duration(sec=-1))
+    wait_for(lambda: not simulator.state()["at_rest"], 15.0, "the motion")
+    wait_for(lambda: simulator.state()["at_rest"], 15.0, "its end")
+    end = simulator.state()["timestamp"]
+    wait_for(lambda: simulator.state()["timestamp"] > end + 3.0, 30.0, "3 s of the robot")
+    assert not goal.is_finished()
+    goal.cancel()
+    assert goal.wait_for_result(10.0)[0] == GoalStatus.STATUS_CANCELED
+
+
+def test_a_plan_for_later_is_checked_at_once(robot):
+    trajectory = timed(*planned_points(home_plus(2.0), 0.5))
+    trajectory.header.stamp = robot.node.get_clock().now().to_msg()
+    trajectory.header.stamp.sec += 50
+    status, result = robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory).wait_for_result(20.0)
+    assert status == GoalStatus.STATUS_ABORTED and result.error_code == Result.INVALID_GOAL
+
+
 def test_starts_at_the_header_stamp(robot, simulator):
     begin = simulator.state()["timestamp"]
     trajectory = timed(*planned_points(home_plus(0.2)))
@@ -145,6 +184,7 @@ def test_unsupported_goals_are_rejected(robot, fields, what):
 def test_a_distant_start_and_invalid_points_are_rejected(robot):
     assert "away" in rejection_message(robot, send(robot, point(0.0, home_plus(0.3)), point(1.0, HOME)))
     assert "times[1]" in rejection_message(robot, send(robot, point(0.0, HOME), point(0.0, HOME)))
+    assert "at the latest" in rejection_message(robot, send(robot, point(0.0, HOME), point(1_800_000_000.0, HOME)))
     assert "7" in rejection_message(robot, send(robot, point(0.0, HOME), point(1.0, home_plus(7.0))))
     assert "rest" in rejection_message(robot, send(robot, point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [1.0] * 6)))
 

@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from support import HOME, JOINTS, Client, Simulator, start_node, wait_for
 from trajectories import TargetRecorder, distance_to_line, point, timed, wave, waypoints
 
-from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory, Stop
+from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 PLUGINS = "plugins:=[move_j,stop,execute_trajectory,execute_parametrized_trajectory]"
@@ -207,6 +207,23 @@ def test_stop_after_cancel_stops_a_gentle_motion_at_once(robot, simulator):
     cycle = at_rest["cycle"]
     wait_for(lambda: simulator.state()["cycle"] > cycle + 250, 10.0, "half a second")
     assert simulator.state()["target"]["position"] == pytest.approx(at_rest["target"]["position"], abs=1e-6), "it creeps on"
+
+
+@pytest.mark.parametrize("is_canceled", [False, True], ids=["running", "canceled"])
+def test_a_goal_that_preempts_a_gentle_motion_does_not_wait_for_its_end(addresses, processes, is_canceled):
+    simulator = processes(Simulator(addresses[1]))
+    processes(start_node("driver", simulator.address, PLUGINS, "ur_type:=ur10e", "on_busy:=preempt", namespace="preempts"))
+    client = Client("preempts")
+    try:
+        make_ready(client)
+        goal = start_gentle_motion(client, simulator)
+        if is_canceled:
+            goal.cancel()
+        next_goal = client.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0)
+        next_goal.succeeded(40.0)
+        assert goal.wait_for_result(10.0)[1].error_code == (ErrorCode.CANCELED if is_canceled else ErrorCode.PREEMPTED)
+    finally:
+        client.close()
 
 
 def test_ctrl_c_after_cancel_stops_a_gentle_motion_in_time(addresses, processes):

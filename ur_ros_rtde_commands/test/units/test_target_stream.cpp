@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <future>
+#include <limits>
 
 #include "stream_fixture.hpp"
 #include "ur_ros_rtde/streaming.hpp"
@@ -51,6 +53,52 @@ TEST_F(TargetStreamTest, EndsWithItsTimeoutIfAnotherThreadKeepsTheInterface)
   end.set_value();
   other.get();
   EXPECT_EQ(streamed.get().error().code, ErrorCode::busy);
+}
+
+TEST_F(TargetStreamTest, RejectsTwistsThatAreTooFastOrNoNumbers)
+{
+  TargetStream stream(*run, follow_twists({}), {});
+  for (const double value : {5.0, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const std::size_t axis : {1U, 4U}) {
+      StreamTarget target;
+      target.values[axis] = value;
+      const Status valid = stream.set(target);
+      ASSERT_FALSE(valid);
+      EXPECT_EQ(valid.error().code, ErrorCode::invalid_goal);
+    }
+  }
+  EXPECT_TRUE(stream.set({}));
+}
+
+/// The control program bridges the gap by extrapolation; the setpoints after it must not stay behind that.
+TEST_F(TargetStreamTest, JointsDoNotPassATargetAtRestAfterAGap)
+{
+  StreamOptions options;
+  options.timeout = 5.0;
+  TargetStream stream(*run, follow_joints(options), options);
+  const double cycle = robot.cycle_time();
+  StreamTarget target;
+  target.values = run->state().actual_q;
+  const double end = target.values[0] + 0.3;
+  double highest = target.values[0];
+  const auto passes_a_cycle = [&] {
+    ASSERT_FALSE(stream.wait());
+    target.values[0] = std::min(target.values[0] + 0.8 * cycle, end);
+    ASSERT_TRUE(stream.set(target, cycle));
+    ASSERT_TRUE(stream.send());
+    highest = std::max(highest, robot.latest()->target_q[0]);
+  };
+  while (target.values[0] < end && !HasFatalFailure()) {
+    if (end - target.values[0] < 4.0 * cycle) {  // until then, it extrapolates at full speed
+      const double until = robot.latest()->controller_time + 5.0 * cycle;
+      ASSERT_TRUE(eventually([&] { return robot.latest()->controller_time >= until; }));
+    }
+    passes_a_cycle();
+  }
+  for (int i = 0; i < 50 && !HasFatalFailure(); ++i) {
+    passes_a_cycle();
+  }
+  EXPECT_LT(highest, end + 0.8 * cycle);
 }
 
 }  // namespace

@@ -163,7 +163,12 @@ void MotionStopper::request(const std::shared_ptr<Permit> & holder, const StopOp
     {
       const std::lock_guard lock(mutex_);
       const auto now = Clock::now();
-      supervision_ = {holder, options, why, now + braking_begin_timeout, now + braking_timeout};
+      Supervision next{holder, options, why, now + braking_begin_timeout, now + braking_timeout};
+      if (supervision_ && supervision_->holder == holder) {  // the first deadline applies
+        next.begin_timeout = std::min(next.begin_timeout, supervision_->begin_timeout);
+        next.end_limit = std::min(next.end_limit, supervision_->end_limit);
+      }
+      supervision_ = std::move(next);
     }
     changed_.notify_all();
     return;
