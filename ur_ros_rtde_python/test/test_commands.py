@@ -1,7 +1,9 @@
 """Sends goals with the methods of Robot."""
 
 import asyncio
+import contextlib
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -9,8 +11,10 @@ import threading
 
 import numpy as np
 import pytest
-from support import HOME, TIMEOUT_FACTOR, Process, wait_for
-from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, UnknownCommand, pose, trajectory
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Process, start_node, wait_for
+from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, RobotError, Timeout, UnknownCommand, pose, trajectory
+from ur_ros_rtde.commands import names
+from ur_ros_rtde_cli.new import ROBOT_MEMBERS
 
 PLUGINS = ("plugins:=[move_j,move_l,stop,make_ready,trigger_protective_stop,execute_trajectory,execute_parametrized_trajectory,"
            "execute_cartesian_path,set_digital_output,dashboard/robot_mode]")
@@ -69,6 +73,22 @@ def test_an_unknown_command_raises_an_error_with_a_similar_name(arm):
 def test_a_plugin_that_the_driver_has_not_loaded(arm):
     with Robot(timeout=0.5) as other, pytest.raises(NoDriver, match="runs without this plugin"):
         other.spiral_search()
+
+
+def test_a_rejection_without_a_number_has_its_field(arm):
+    with pytest.raises(Rejected, match="must be finite") as rejected:
+        arm.move_l([np.nan, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0])
+    assert rejected.value.field == "pose.position"
+
+
+def test_errors_reach_another_process(arm):
+    with pytest.raises(Rejected) as rejected:
+        arm.move_j(AWAY, speed=9)
+    copy = pickle.loads(pickle.dumps(rejected.value))
+    assert (copy.field, copy.value, str(copy)) == ("speed", 9.0, str(rejected.value))
+    with pytest.raises(CommandFailed) as failed:
+        raise CommandFailed("move_j", arm.move_j(HOME))
+    assert pickle.loads(pickle.dumps(failed.value)).result == failed.value.result
 
 
 def test_busy_is_rejected_with_its_remedy(arm):
@@ -199,6 +219,115 @@ def test_a_signal_stops_the_arm_before_the_program_ends(arm, simulator, number, 
     assert_stopped_early(arm, simulator)
 
 
+@pytest.mark.parametrize("before, after", [("rclpy.init()", ""), ("", "rclpy.init()")], ids=["before", "after"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+def test_a_signal_stops_the_arm_of_a_program_that_uses_rclpy_itself(arm, simulator, before, after, number):
+    """rclpy's handlers would close the connection first. The program survives, so that no lost client stops the arm."""
+    code = f"""
+import time
+import rclpy
+from ur_ros_rtde import Robot
+{before}
+with Robot(timeout=20.0) as arm:
+    {after}
+    try:
+        arm.move_j({AWAY}, {SLOW})
+    except (KeyboardInterrupt, SystemExit):
+        print("stopped", arm.state.joint_velocities.max() < 0.01, flush=True)
+        time.sleep(30.0)
+"""
+    program = Process([sys.executable, "-c", code])
+    try:
+        wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
+        program.signal(number)
+        wait_for(lambda: "stopped" in program.output(), 20.0, f"the end of the goal: {program.output()}")
+        assert "stopped True" in program.output()
+        assert_stopped_early(arm, simulator)
+    finally:
+        program.kill()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+def test_a_signal_stops_the_arm_of_a_program_that_spins(arm, simulator, number):
+    """rclpy's handlers end rclpy.spin(), and shut down the context of the Robot, too."""
+    code = f"""
+import time
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from ur_ros_rtde import Robot
+rclpy.init()
+node = rclpy.create_node("own_node")
+try:
+    with Robot(timeout=20.0) as arm:
+        goal = arm.start.move_j({AWAY}, {SLOW})
+        rclpy.spin(node)
+except (KeyboardInterrupt, SystemExit, ExternalShutdownException):
+    pass
+print("closed", flush=True)
+time.sleep(30.0)
+"""
+    program = Process([sys.executable, "-c", code])
+    try:
+        wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
+        program.signal(number)
+        wait_for(lambda: "closed" in program.output(), 20.0, f"the end of the Robot: {program.output()}")
+        assert simulator.is_at_rest()
+        assert_stopped_early(arm, simulator)
+    finally:
+        program.kill()
+
+
+def test_a_robot_that_is_closed_leaves_the_signals_to_the_others(arm):
+    own = lambda number, frame: None  # noqa: E731
+    first, second = Robot("first", timeout=1.0), Robot("second", timeout=1.0)
+    handler = signal.getsignal(signal.SIGTERM)
+    first.close()
+    assert signal.getsignal(signal.SIGTERM) is handler is not signal.SIG_DFL
+    before = signal.signal(signal.SIGTERM, own)
+    second.close()
+    assert signal.signal(signal.SIGTERM, before) is own
+
+
+def test_the_arguments_of_the_program_do_not_move_a_robot_with_a_namespace(monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["program", "--ros-args", "-r", "__ns:=/left"])
+    with Robot("right") as right, Robot() as moved:
+        assert repr(right) == "Robot(namespace='/right')" and repr(moved) == "Robot(namespace='/left')"
+
+
+def test_the_members_of_a_robot_are_no_names_of_new_commands(arm):
+    own = {name for name in [*vars(arm), *vars(Robot)] if not name.startswith("_")}
+    commands = {name.partition("/")[0] for name in names()}  # and their groups
+    assert own - commands == set(ROBOT_MEMBERS)
+
+
+def test_a_closed_robot_says_so(arm):
+    robot = Robot()
+    robot.close()
+    for use in (lambda: robot.move_j(HOME), lambda: robot.state.joint_positions, lambda: robot.state.robot_mode):
+        with pytest.raises(RobotError, match="the Robot is closed"):
+            use()
+
+
+def test_a_canceled_task_does_not_wait_for_other_jobs(arm, simulator):
+    ends = threading.Event()
+
+    async def cancel():
+        loop = asyncio.get_running_loop()
+        others = [loop.run_in_executor(None, ends.wait, 60.0) for _ in range(64)]
+        task = asyncio.ensure_future(goal._await())
+        await asyncio.sleep(0.5)
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+        assert simulator.is_at_rest(), "although all threads are busy"
+        ends.set()
+        await asyncio.gather(*others)
+
+    goal = arm.start.move_j(AWAY, SLOW)
+    asyncio.run(cancel())
+    assert_stopped_early(arm, simulator)
+
+
 def test_rclpy_is_imported_only_by_a_robot():
     code = "import sys, ur_ros_rtde; sys.exit('rclpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
@@ -219,3 +348,31 @@ def test_a_driver_that_is_killed_ends_the_wait(lost_robot):
         with pytest.raises(NoDriver, match="while move_j was running"):
             goal.result(TIMEOUT_FACTOR * 60.0)
         wait_for(simulator.is_at_rest, 10.0, "the watchdog to stop the arm")
+
+
+def test_a_driver_that_is_started_again_at_once_does_not_hide_its_loss(lost_robot):
+    with lost_robot("again") as (robot, driver, simulator):
+        assert robot.state.driver_state == "READY"
+        goal = robot.start.move_j(AWAY, SLOW)
+        driver.kill()
+        again = start_node("driver", simulator.address, FEW_PLUGINS, namespace="again")
+        try:
+            with pytest.raises(NoDriver, match="while move_j was running"):
+                goal.result(TIMEOUT_FACTOR * 60.0)
+            assert robot.state.wait_until(lambda state: state.driver_state == "READY", TIMEOUT_FACTOR * 30.0), again.output()
+        finally:
+            again.stop()
+
+
+def test_the_state_of_a_driver_that_has_ended_is_not_reported(lost_robot):
+    with lost_robot("gone") as (robot, driver, _simulator):
+        assert robot.state.driver_state == "READY"
+        driver.kill()
+
+        def is_reported():
+            try:
+                return robot.state.driver_state
+            except NoDriver:
+                return None
+
+        wait_for(lambda: is_reported() is None, 40.0, "the loss of the driver")

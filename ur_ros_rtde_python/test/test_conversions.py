@@ -26,7 +26,8 @@ def test_a_pose_has_a_quaternion_or_a_rotation_vector():
         pose([1, 2])
 
 
-@pytest.mark.parametrize("given", [np.arange(7.0), list(range(7)), tuple(range(7)), pose([0, 1, 2], [3, 4, 5, 6]),
+@pytest.mark.parametrize("given", [np.arange(7.0), list(range(7)), tuple(range(7)), list(np.arange(7, dtype=np.float32)),
+                                   pose([0, 1, 2], [3, 4, 5, 6]),
                                    {"position": [0, 1, 2], "orientation": np.arange(3.0, 7.0)}])
 def test_numbers_become_a_pose(given):
     assert np.array_equal(numbers(goal("MoveL", pose=given).pose), np.arange(7.0))
@@ -41,7 +42,7 @@ def test_a_message_is_taken_as_it_is():
     assert goal("MoveL", pose=given).pose == given
 
 
-@pytest.mark.parametrize("given", [np.arange(5.0), np.arange(8.0), ["a"] * 7, [True] * 7, 3.0])
+@pytest.mark.parametrize("given", [[], np.arange(5.0), np.arange(8.0), ["a"] * 7, [True] * 7, 3.0])
 def test_numbers_that_are_no_pose_are_rejected(given):
     with pytest.raises(Rejected, match="pose is .*expected a mapping of fields") as rejected:
         goal("MoveL", pose=given)

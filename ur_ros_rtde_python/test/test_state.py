@@ -1,11 +1,13 @@
 """Reads the state of the robot: attributes, streams and recordings."""
 
 import sys
+import time
 
 import numpy as np
 import pytest
-from support import HOME, TIMEOUT_FACTOR
+from support import HOME, TIMEOUT_FACTOR, wait_for
 from ur_ros_rtde import NoDriver, Robot, RobotError, read_recording
+from ur_ros_rtde.conversions import interface
 
 PLUGINS = "plugins:=[move_j,stop]"
 AWAY = [0.5, *HOME[1:]]
@@ -43,6 +45,44 @@ def test_a_stream_has_all_fields_of_each_cycle_and_ends(arm):
     # The joint and the TCP turn around the same axis, so they belong to the same cycle.
     turned = np.unwrap([np.arctan2(sample.tcp_pose[1], sample.tcp_pose[0]) for sample in samples])
     assert np.allclose(turned - turned[0], angles - angles[0], atol=NOISE)
+
+
+def test_a_stream_has_the_joints_of_the_robot_not_those_of_the_twin(arm):
+    service = "std_srvs/srv/SetBool"
+    arm._connection.call(service, "publish_fake_joint_states", data=True)
+    node, kind = arm._connection.node, interface("sensor_msgs/msg/JointState")
+    publisher = node.create_publisher(kind, "fake_joint_states", 10)
+    try:
+        shown = []
+        subscription = arm._connection.subscribe("sensor_msgs/msg/JointState", "joint_states", shown.append)
+
+        def is_shown():
+            publisher.publish(kind(name=arm.state.joint_names, position=[1.0] * 6))
+            return shown and shown[-1].position[0] == 1.0
+
+        wait_for(is_shown, 20.0, "the twin")
+        sample = next(arm.state.stream("joint_positions", duration=10.0))
+        assert np.allclose(sample.joint_positions, arm.state.joint_positions, atol=1e-3)
+    finally:
+        arm._connection.unsubscribe(subscription)
+        arm._connection.call(service, "publish_fake_joint_states", data=False)
+        node.destroy_publisher(publisher)
+
+
+def test_a_slow_loop_gets_the_newest_samples(arm):
+    delays = []
+    for sample in arm.state.stream("joint_positions", duration=1.5, newest=True):
+        delays.append(time.time() - sample.time)
+        time.sleep(0.05)  # a slow loop, while 25 samples come
+    assert len(delays) > 5 and np.median(delays) < 0.3
+
+
+def test_a_stream_that_is_kept_does_not_grow_after_its_end(arm):
+    stream = arm.state.stream("joint_positions", duration=0.2)
+    first = next(stream)
+    assert arm.state.wait_until(lambda state: time.time() > first.time + 1.0, 20.0)
+    rest = list(stream)
+    assert all(sample.time <= first.time + 0.2 for sample in rest) and len(rest) <= 101
 
 
 def test_a_stream_can_be_left_early(arm):

@@ -5,7 +5,7 @@ import contextlib
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from ur_ros_rtde_cli import actions, errors, fastdds_profile
@@ -42,6 +42,28 @@ def load(name: str, kind: str) -> Any:
         raise RobotError(str(error)) from None
 
 
+@contextlib.contextmanager
+def own_signals() -> Iterator[None]:
+    """For a wait in the main thread: without the signal handlers of rclpy.init(), which shut down all contexts. That of a Robot would be
+    gone before its goals can be canceled."""
+    from rclpy.signals import (
+        SignalHandlerOptions,
+        get_current_signal_handlers_options,
+        install_signal_handlers,
+        uninstall_signal_handlers,
+    )
+
+    installed = get_current_signal_handlers_options()
+    if installed == SignalHandlerOptions.NO or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    uninstall_signal_handlers()
+    try:
+        yield
+    finally:
+        install_signal_handlers(installed)
+
+
 class Connection:
     """`timeout` limits the waits for the driver and for its responses, `result_timeout` those for results, in s."""
 
@@ -54,13 +76,15 @@ class Connection:
         self.timeout, self.result_timeout = timeout, result_timeout
         self._context = rclpy.Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        # The arguments of the program may move all its nodes to another namespace: that of another arm.
         self.node: Any = rclpy.create_node("ur_ros_rtde_python", namespace=namespace.strip("/") or None, context=self._context,
-                                           enable_rosout=False, start_parameter_services=False)
+                                           use_global_arguments=not namespace, enable_rosout=False, start_parameter_services=False)
         self.namespace: str = self.node.get_namespace().rstrip("/")
         self._created_at = time.monotonic()
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._clients: dict[str, Any] = {}  # of actions and services, by full name
+        self.types: dict[str, str] = {}  # of the actions of which there are clients
         self._rejections: dict[bytes, Any] = {}
         self._subscribe_rejections()
         self._thread = threading.Thread(target=self._executor.spin, name="ur_ros_rtde", daemon=True)
@@ -76,12 +100,15 @@ class Connection:
     def is_open(self) -> bool:
         return bool(self._context.ok()) and self._thread.is_alive()
 
+    def check_open(self) -> None:
+        if not self.is_open:
+            raise RobotError("the Robot is closed")
+
     def in_executor(self, function: Callable[[], T]) -> T:
         """Calls `function` in the executor's thread and returns its result.
 
         rclpy loses a response that arrives while another thread is still sending the request."""
-        if not self.is_open:
-            raise RobotError("the Robot is closed")
+        self.check_open()
         if threading.current_thread() is self._thread:
             return function()
         done: concurrent.futures.Future[T] = concurrent.futures.Future()
@@ -119,11 +146,13 @@ class Connection:
 
     def action_client(self, name: str) -> Any:
         """Returns the client of an action whose server is known. Raises NoDriver or UnknownCommand."""
+        self.check_open()
         if name not in self._clients:
             from rclpy.action import ActionClient
 
             # A client that is created while announcements of the server are still arriving would be discovered only in part.
-            action = load(name, self.type_of(name))
+            self.types[name] = self.type_of(name)
+            action = load(name, self.types[name])
             self._clients[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._clients[name]
         if not until(client.server_is_ready, self.timeout):
@@ -163,6 +192,14 @@ class Connection:
     def call(self, kind: str, name: str, **request: Any) -> Any:
         """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails."""
         service = interface(kind)
+        response = self.request(service, name, service.Request(**request), self.timeout)
+        if not response.success:
+            raise RobotError(response.message)
+        return response
+
+    def request(self, service: Any, name: str, request: Any, timeout: float) -> Any:
+        """Returns the response of a service of this class. Raises NoDriver after `timeout` s without one."""
+        self.check_open()
         if name not in self._clients:
             self._clients[name] = self.in_executor(lambda: self.node.create_client(service, name))
         client = self._clients[name]
@@ -170,15 +207,11 @@ class Connection:
             raise NoDriver(f"no driver offers the service {self.full_name(name)} within {self.timeout:g} s: start the driver, or check "
                            f"the namespace and ROS_DOMAIN_ID ({os.environ.get('ROS_DOMAIN_ID', '0')})")
         done: concurrent.futures.Future[Any] = concurrent.futures.Future()
-        self.in_executor(lambda: client.call_async(service.Request(**request)).add_done_callback(
-            lambda future: done.set_result(future.result())))
+        self.in_executor(lambda: client.call_async(request).add_done_callback(lambda future: done.set_result(future.result())))
         try:
-            response = done.result(self.timeout)
+            return done.result(timeout)
         except concurrent.futures.TimeoutError:
-            raise NoDriver(f"the service {self.full_name(name)} did not respond within {self.timeout:g} s") from None
-        if not response.success:
-            raise RobotError(response.message)
-        return response
+            raise NoDriver(f"the service {self.full_name(name)} did not respond within {timeout:g} s") from None
 
     def subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], latched: bool = False) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -186,6 +219,10 @@ class Connection:
         durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
         qos = QoSProfile(depth=100 if latched else 2000, durability=durability)
         return self.node.create_subscription(interface(kind), topic, callback, qos)
+
+    def publishers(self, topic: str) -> frozenset[bytes]:
+        """Returns the ids of the endpoints that publish a topic now: a driver that has been started again has others."""
+        return frozenset(bytes(info.endpoint_gid) for info in self.node.get_publishers_info_by_topic(self.full_name(topic)))
 
     def unsubscribe(self, subscription: Any) -> None:
         with contextlib.suppress(RobotError):

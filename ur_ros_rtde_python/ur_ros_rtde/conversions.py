@@ -88,6 +88,7 @@ def plain(kind: Any, value: Any) -> Any:
     if isinstance(value, (numpy.ndarray, numpy.generic)):
         value = value.tolist()
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
+        value = [item.item() if isinstance(item, numpy.generic) else item for item in value]
         if isinstance(kind, idl.AbstractNestedType):
             return [plain(kind.value_type, item) for item in value]
         from_numbers = _mapping(kind, value) if isinstance(kind, idl.NamespacedType) else None
@@ -109,7 +110,7 @@ def kinds_of(message: Any) -> dict[str, Any]:
 
 def _mapping(kind: Any, values: Sequence[Any]) -> dict[str, Any] | None:
     """Returns the fields of a message from its numbers, or None if they do not fit. Trailing messages may be missing."""
-    if not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
+    if not values or not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
         return None
     rest = deque(values)
     try:

@@ -26,6 +26,10 @@ def _names() -> dict[int, str]:
     return {int(constant.value): constant.name for constant in constants.values()}
 
 
+# One without a number: "pose.position is (nan, 0, 0) m, it must be finite".
+_FIELD_ALONE = re.compile(r"(?P<field>[a-z]\w*(?:\.\w+|\[\d+\])*) (?:is|has) ")
+
+
 class RobotError(Exception):
     """Base class of all exceptions of this package."""
 
@@ -49,9 +53,13 @@ class Rejected(_Coded):
     def __init__(self, command: str, code: int, message: str, field: str | None = None):
         super().__init__(command, code, message)
         found = _FIELD.match(message)
-        self.field = found["field"] if found else field
+        named = found or (_FIELD_ALONE.match(message) if field is None else None)
+        self.field = named["field"] if named else field
         self.value = float(found["value"]) if found else None
         self.limit = found["limit"].strip() if found else None
+
+    def __reduce__(self) -> Any:  # for another process
+        return type(self), (self.command, self.code, self.message, self.field)
 
 
 class CommandFailed(_Coded):
@@ -63,6 +71,9 @@ class CommandFailed(_Coded):
     def __init__(self, command: str, result: Any):
         super().__init__(command, getattr(result, "error_code", 0), getattr(result, "message", "") or "failed")
         self.result = result
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.command, self.result)
 
 
 class NoDriver(RobotError, ConnectionError):

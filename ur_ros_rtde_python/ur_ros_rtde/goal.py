@@ -9,11 +9,11 @@ from collections.abc import Callable, Generator
 from types import TracebackType
 from typing import Any
 
-from .connection import Connection
+from .connection import Connection, load, own_signals
 from .conversions import interface
 from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout
 
-CANCEL_TIMEOUT = 10.0  # s, for the result of a canceled goal
+CANCEL_TIMEOUT = 35.0  # s, for the result of a canceled goal, which may brake within gentle limits of its own
 LOSS_TIME = 2.0  # s without a server, after which the driver counts as gone
 CHECK_PERIOD = 0.5  # s, between two checks of whether the driver is alive
 
@@ -32,6 +32,7 @@ class Goal:
         self._connection, self._message, self._on_finished = connection, message, on_finished
         self._client: Any = None
         self._handle: Any = None
+        self._servers: frozenset[bytes] = frozenset()  # the endpoints of the driver that has accepted the goal
         self._answered: concurrent.futures.Future[Any] = concurrent.futures.Future()
         self._finished: concurrent.futures.Future[Any] = concurrent.futures.Future()
         self._changed = threading.Condition()
@@ -50,6 +51,10 @@ class Goal:
 
     def send(self) -> "Goal":
         """Sends the goal and returns when it is accepted. Raises Rejected or NoDriver."""
+        with own_signals():
+            return self._send_and_wait()
+
+    def _send_and_wait(self) -> "Goal":
         try:
             self._client = self._connection.action_client(self.name)
             self._queued = True
@@ -73,12 +78,13 @@ class Goal:
         `on_progress` is called with each feedback message. Any exception, also one of `on_progress`, and Ctrl-C cancel the goal; it
         propagates when the arm is at standstill. The same applies after `timeout` s.
         """
-        try:
-            if not self._wait(timeout, on_progress):
-                raise Timeout(f"{self.name} has not ended within {timeout:g} s; it was canceled")
-        except BaseException:
-            self.abandon()
-            raise
+        with own_signals():
+            try:
+                if not self._wait(timeout, on_progress):
+                    raise Timeout(f"{self.name} has not ended within {timeout:g} s; it was canceled")
+            except BaseException:
+                self.abandon()
+                raise
         return self._outcome()
 
     def wait(self, timeout: float) -> bool:
@@ -99,9 +105,25 @@ class Goal:
             if self._queued and not self.is_finished and not self._abandoned:
                 self._abandoned = True
                 with contextlib.suppress(RobotError):
-                    self.cancel()
+                    if self._connection.is_open:
+                        self.cancel()
+                    else:
+                        self._cancel_over_another_connection()
         finally:
             self._on_finished(self)
+
+    def _cancel_over_another_connection(self) -> None:
+        """The handlers of rclpy.init() have shut down that of the Robot, for example while the program was in rclpy.spin()."""
+        if self._handle is None:
+            return
+        action, goal_id = load(self.name, self._connection.types[self.name]), self._handle.goal_id
+        cancel = interface("action_msgs/srv/CancelGoal")
+        request = cancel.Request()
+        request.goal_info.goal_id = goal_id
+        with contextlib.closing(Connection(self._connection.namespace, self._connection.timeout, CANCEL_TIMEOUT)) as fresh:
+            fresh.request(cancel, f"{self.name}/_action/cancel_goal", request, fresh.timeout)
+            result = action.Impl.GetResultService
+            fresh.request(result, f"{self.name}/_action/get_result", result.Request(goal_id=goal_id), CANCEL_TIMEOUT)
 
     def __await__(self) -> Generator[Any, None, Any]:
         return self._await().__await__()
@@ -113,9 +135,22 @@ class Goal:
                 await asyncio.wait([finished], timeout=CHECK_PERIOD)  # a canceled task does not cancel the future
                 lost_since = self._check_driver(lost_since)
         except BaseException:  # the task was canceled, or the driver is gone
-            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, self.abandon))
+            await asyncio.shield(self._abandon_in_thread())
             raise
         return self._outcome()
+
+    def _abandon_in_thread(self) -> "asyncio.Future[None]":
+        """In a thread of its own: those of the event loop may all be busy with what the program waits for."""
+        done: concurrent.futures.Future[None] = concurrent.futures.Future()
+
+        def abandon() -> None:
+            try:
+                self.abandon()
+            finally:
+                done.set_result(None)
+
+        threading.Thread(target=abandon, name="ur_ros_rtde_cancel").start()
+        return asyncio.wrap_future(done)
 
     def __enter__(self) -> "Goal":
         return self
@@ -149,13 +184,22 @@ class Goal:
 
     def _check_driver(self, lost_since: float | None) -> float | None:
         """Returns since when the driver is missing, or None. Raises NoDriver if that is too long."""
-        if self.is_finished or (self._connection.is_open and self._client.server_is_ready()):
+        if self.is_finished or (self._connection.is_open and self._is_served()):
             return None
         since = time.monotonic() if lost_since is None else lost_since
         if not self._connection.is_open or time.monotonic() - since > LOSS_TIME:
             raise NoDriver(f"the driver has ended or is out of reach while {self.name} was running: its result is unknown. "
                            "A driver that ends stops the arm. Start it again, and look at its log")
         return since
+
+    def _is_served(self) -> bool:
+        """By the driver that has accepted the goal, not by one that has been started after it."""
+        is_same = not self._servers or not self._servers.isdisjoint(self._connection.publishers(self._status_topic))
+        return is_same and bool(self._client.server_is_ready())
+
+    @property
+    def _status_topic(self) -> str:
+        return f"{self.name}/_action/status"
 
     def request_cancel(self) -> None:
         """Cancels the goal without waiting for its end."""
@@ -182,7 +226,7 @@ class Goal:
     def _on_answer(self, future: Any) -> None:
         handle = future.result()
         if handle.accepted:
-            self._handle = handle
+            self._handle, self._servers = handle, self._connection.publishers(self._status_topic)
             handle.get_result_async().add_done_callback(self._on_result)
             if self._cancel_requested:
                 handle.cancel_goal_async()
@@ -215,16 +259,17 @@ def wait_for_all(*goals: Goal, timeout: float | None = None) -> list[Any]:
     a lost driver (NoDriver), to `timeout` s (Timeout), and to Ctrl-C. The others begin to decelerate when the result of the failed goal
     is there, that is at the standstill of its arm.
     """
-    try:
-        _wait_for_success(goals, timeout)
-        return [goal._outcome() for goal in goals]
-    except BaseException:
-        for goal in goals:  # all decelerate at the same time
-            with contextlib.suppress(RobotError):
-                goal.request_cancel()
-        for goal in goals:
-            goal.abandon()
-        raise
+    with own_signals():
+        try:
+            _wait_for_success(goals, timeout)
+            return [goal._outcome() for goal in goals]
+        except BaseException:
+            for goal in goals:  # all decelerate at the same time
+                with contextlib.suppress(RobotError):
+                    goal.request_cancel()
+            for goal in goals:
+                goal.abandon()
+            raise
 
 
 def _wait_for_success(goals: tuple[Goal, ...], timeout: float | None) -> None:

@@ -7,10 +7,10 @@ import signal
 import threading
 from collections.abc import Sequence
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, ClassVar
 
 from .commands import Commands, StartedCommands
-from .connection import Connection
+from .connection import Connection, own_signals
 from .errors import RobotError
 from .goal import Goal
 from .modes import Modes
@@ -50,17 +50,17 @@ class Robot(Commands):
     def close(self) -> None:
         """Cancels the running goals, waits until they have ended, and removes the node."""
         atexit.unregister(self.close)
-        self._signals.restore()
-        if not self._connection.is_open:
-            return
-        running = list(self._goals)
-        for goal in running:
-            with contextlib.suppress(RobotError):
-                goal.request_cancel()
-        for goal in running:
-            with contextlib.suppress(RobotError):
-                goal.cancel()
-        self._connection.close()
+        try:
+            with own_signals():
+                running = list(self._goals)
+                for goal in running:
+                    with contextlib.suppress(RobotError):
+                        goal.request_cancel()
+                for goal in running:
+                    goal.abandon()
+                self._connection.close()
+        finally:
+            self._signals.restore()
 
     def __enter__(self) -> "Robot":
         return self
@@ -72,22 +72,29 @@ class Robot(Commands):
         return f"Robot(namespace={self._connection.namespace!r})"
 
 
+def _exit(number: int, frame: FrameType | None) -> Any:
+    raise SystemExit(128 + number)
+
+
 class _EndBySignal:
-    """Raises SystemExit at SIGTERM and SIGHUP, so that `finally` and `with` are executed. Python would end without them."""
+    """Raises SystemExit at SIGTERM and SIGHUP, so that `finally` and `with` are executed. Python would end without them.
+
+    The handlers stay until the last Robot is closed."""
+
+    _users: ClassVar[set["_EndBySignal"]] = set()
 
     def __init__(self) -> None:
-        self._handled: list[int] = []
+        self._users.add(self)
         if threading.current_thread() is threading.main_thread():
-            self._handled = [number for number in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(number) == signal.SIG_DFL]
-        for number in self._handled:
-            signal.signal(number, self._exit)
-
-    @staticmethod
-    def _exit(number: int, frame: FrameType | None) -> Any:
-        raise SystemExit(128 + number)
+            with own_signals():  # those of rclpy.init() stay in front of it
+                for number in (signal.SIGTERM, signal.SIGHUP):
+                    if signal.getsignal(number) == signal.SIG_DFL:
+                        signal.signal(number, _exit)
 
     def restore(self) -> None:
-        if threading.current_thread() is threading.main_thread():
-            for number in self._handled:
-                signal.signal(number, signal.SIG_DFL)
-            self._handled = []
+        self._users.discard(self)
+        if not self._users and threading.current_thread() is threading.main_thread():
+            with own_signals():
+                for number in (signal.SIGTERM, signal.SIGHUP):
+                    if signal.getsignal(number) is _exit:
+                        signal.signal(number, signal.SIG_DFL)

@@ -25,9 +25,9 @@ class _Field:
 
 
 STREAMS = {
-    "joint_positions": _Field("joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.position)),
-    "joint_velocities": _Field("joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.velocity)),
-    "joint_efforts": _Field("joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.effort)),
+    "joint_positions": _Field("actual_joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.position)),
+    "joint_velocities": _Field("actual_joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.velocity)),
+    "joint_efforts": _Field("actual_joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.effort)),
     "target_joint_positions": _Field("target_joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.position)),
     "target_joint_velocities": _Field("target_joint_states", "sensor_msgs/msg/JointState", lambda message: numbers(message.velocity)),
     "tcp_pose": _Field("tcp_pose", "geometry_msgs/msg/PoseStamped", lambda message: numbers(message.pose)),
@@ -50,7 +50,8 @@ class State:
 
     def __init__(self, connection: Connection):
         self._connection = connection
-        self._latest: dict[str, Any] = {}  # of transient local topics
+        self._latest: dict[str, tuple[Any, frozenset[bytes]]] = {}  # of transient local topics, with their publishers
+        self._subscribed: set[str] = set()
 
     @property
     def joint_names(self) -> list[str]:
@@ -135,48 +136,63 @@ class State:
         """Waits at most `timeout` s until `condition(state)` is true. Returns whether it is."""
         return bool(until(lambda: condition(self), timeout, 0.02))
 
-    def stream(self, *fields: str, duration: float) -> Iterator[Any]:
+    def stream(self, *fields: str, duration: float, newest: bool = False) -> Iterator[Any]:
         """Yields samples of these fields for `duration` s of the state's time, one for each control cycle.
 
         A sample is a named tuple with `time` (s since the epoch) and the fields, all of the same control cycle. The fields are
         joint_positions, joint_velocities, joint_efforts, target_joint_positions, target_joint_velocities, tcp_pose, tcp_speed, wrench,
         digital_inputs and digital_outputs. At 500 Hz, each topic takes about a tenth of a processor core.
+
+        Samples wait while the loop is busy. With `newest`, it gets only the newest of them: for control, where old ones are of no use.
         """
         wanted = fields or ("joint_positions",)
         for name in wanted:
             if name not in STREAMS:
                 raise ValueError(f"there is no field {name}; the fields are: {', '.join(STREAMS)}")
-        return self._samples(wanted, duration)
+        return self._samples(wanted, duration, newest)
 
-    def _samples(self, fields: tuple[str, ...], duration: float) -> Iterator[Any]:
+    def _samples(self, fields: tuple[str, ...], duration: float, newest: bool) -> Iterator[Any]:
         make_type: Any = collections.namedtuple
         sample_type = make_type("Sample", ("time", *fields))
         topics = {STREAMS[name].topic: STREAMS[name].kind for name in fields}
-        complete: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        complete: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()  # None: the end
         parts: dict[float, dict[str, Any]] = {}  # messages by topic, by time stamp; used in the executor's thread
 
+        first: float | None = None
+        has_all = False
+
         def add(topic: str, message: Any) -> None:
+            nonlocal first, has_all
             stamp = _seconds(message.header.stamp)
+            if has_all or (first is not None and stamp - first > duration):
+                if not has_all:
+                    complete.put(None)
+                has_all = True
+                return
             sample = parts.setdefault(stamp, {})
             sample[topic] = message
             if len(sample) == len(topics):
                 complete.put(parts.pop(stamp))
+                first = stamp if first is None else first
             elif len(parts) > INCOMPLETE_SAMPLES:
                 del parts[min(parts)]
 
+        self._connection.check_open()
         subscriptions = [self._connection.subscribe(kind, topic, functools.partial(add, topic))
                          for topic, kind in topics.items()]
         try:
-            start = None
+            timeout = self._connection.timeout
             while True:
                 try:
-                    sample = complete.get(timeout=self._connection.timeout if start is None else STREAM_TIMEOUT)
+                    sample = complete.get(timeout=timeout)
                 except queue.Empty:
                     raise NoDriver(f"no messages on {', '.join(topics)}: {self._reason()}") from None
-                now = _seconds(next(iter(sample.values())).header.stamp)
-                start = now if start is None else start
-                if now - start > duration:
+                timeout = STREAM_TIMEOUT
+                while newest and sample is not None and not complete.empty():
+                    sample = complete.get()
+                if sample is None:
                     return
+                now = _seconds(next(iter(sample.values())).header.stamp)
                 yield sample_type(now, *(STREAMS[name].read(sample[STREAMS[name].topic]) for name in fields))
         finally:
             for subscription in subscriptions:
@@ -200,9 +216,20 @@ class State:
 
     def _latched(self, topic: str, kind: str) -> Any:
         """Returns the newest message of a topic whose last value late subscribers receive."""
-        if topic not in self._latest:
-            self._latest[topic] = None
-            self._connection.subscribe(kind, topic, lambda message: self._latest.__setitem__(topic, message), latched=True)
-        if until(lambda: self._latest[topic], self._connection.timeout) is None:
+        def store(message: Any) -> None:
+            self._latest[topic] = (message, self._connection.publishers(topic))
+
+        def newest() -> tuple[Any] | None:
+            found = self._latest.get(topic)
+            if found and found[1] and found[1].isdisjoint(self._connection.publishers(topic)):
+                return None  # its driver has ended
+            return (found[0],) if found else None
+
+        self._connection.check_open()
+        if topic not in self._subscribed:
+            self._subscribed.add(topic)
+            self._connection.subscribe(kind, topic, store, latched=True)
+        found = until(newest, self._connection.timeout)
+        if found is None:
             raise NoDriver(f"no message on {self._connection.full_name(topic)} within {self._connection.timeout:g} s: start the driver")
-        return self._latest[topic]
+        return found[0]

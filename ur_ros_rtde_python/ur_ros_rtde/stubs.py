@@ -7,6 +7,7 @@ Run it again after a plugin was installed. It needs no driver.
 """
 
 import argparse
+import keyword
 import pathlib
 import re
 import sys
@@ -128,6 +129,10 @@ def _method(plugin: Plugin, kind: str, types: _Types, starts: bool) -> list[str]
             *_documentation(documentation(kind, plugin.description), "        "), "        ..."]
 
 
+def _is_method(name: str) -> bool:
+    return name.isidentifier() and not keyword.iskeyword(name)
+
+
 def _class(name: str, plugins: dict[str, tuple[Plugin, str]], types: _Types, starts: bool, prefix: str = "") -> list[str]:
     """Returns the class of a group of commands, after the classes of the groups in it."""
     own = {full: found for full, found in plugins.items() if full.startswith(prefix)}
@@ -137,7 +142,7 @@ def _class(name: str, plugins: dict[str, tuple[Plugin, str]], types: _Types, sta
         inner = f"_{name.strip('_')}{group.title().replace('_', '')}"
         lines += _class(inner, plugins, types, starts, f"{prefix}{group}/")
         members.append(f"    {group}: {inner}")
-    methods = [line for full, (plugin, kind) in own.items() if "/" not in full[len(prefix):]
+    methods = [line for full, (plugin, kind) in own.items() if _is_method(full[len(prefix):])
                for line in _method(plugin, kind, types, starts)]
     return [*lines, "", "", f"class {name}:", *members, *([] if prefix else [INIT]), *methods]
 

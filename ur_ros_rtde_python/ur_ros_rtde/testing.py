@@ -16,6 +16,7 @@ robot_model, simulator_options or driver_parameters takes the place of the one h
 """
 
 import contextlib
+import os
 import pathlib
 import signal
 import socket
@@ -117,6 +118,8 @@ def own_domain() -> Iterator[int]:
         number = _reserve_domain(reserved)
         environment.setenv("ROS_DOMAIN_ID", str(number))
         environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        if os.environ.get("ROS_DISTRO") == "humble":  # does not know it
+            environment.setenv("ROS_LOCALHOST_ONLY", "1")
         yield number
 
 
