@@ -21,8 +21,8 @@ KEYS = {"Boost": "libboost-dev", "CLI11": "cli11", "Eigen3": "eigen", "GTest": "
 MODULES = {"ur_ros_rtde": "ur_ros_rtde_python", "ur_ros_rtde_launch": "ur_ros_rtde"}  # Python modules and their packages
 NOT_DECLARED = {"Threads",  # part of CMake
                 "copp_py", "toppra",  # solvers that oracle.py compares with
-                # No rosdep key for viser, which requires the others; the viewer says how to install it.
-                "viser", "websockets", "msgspec", "zstandard",
+                # No rosdep key for rosbags, and viser, which requires the others; the programs say how to install them.
+                "rosbags", "viser", "websockets", "msgspec", "zstandard",
                 "playwright"}  # installed by `./ur test` for the browser tests
 
 

@@ -47,6 +47,16 @@ def test_an_invalid_name_is_rejected_with_the_reason(tmp_path, new):
         assert code == 2 and reason in printed and not list(tmp_path.iterdir()), printed
 
 
+@pytest.mark.parametrize("name, reason", [("return", "Python has no method"), ("close", "Robot.close of ur_ros_rtde is something else")])
+def test_a_name_that_cannot_be_a_method_is_rejected(tmp_path, new, name, reason):
+    code, printed = new("command", name, "--directory", tmp_path)
+    assert code == 2 and reason in printed and not list(tmp_path.iterdir()), printed
+
+
+def test_a_dashboard_command_may_be_called_close(tmp_path, new):
+    assert new("dashboard", "close", "--directory", tmp_path)[0] == 0
+
+
 def test_an_existing_package_is_not_overwritten(tmp_path, new):
     assert new("command", "wag", "--directory", tmp_path)[0] == 0
     code, printed = new("command", "wag", "--directory", tmp_path)

@@ -99,3 +99,12 @@ def test_private_data_are_replaced_equal_ones_by_equal_words(monkeypatch):
     assert report.without_private_data(text) == (
         "~/run.csv on <host> by <user>: <address 1> and <address 2>, again <address 1>:30004, "
         "ur_stop_<address 1>_FAULT, 127.0.0.1, <MAC address 1>, serial number <serial number 1>; 0.0.0.0; janet, version 5.25.1")
+
+
+def test_names_of_robots_and_addresses_of_ipv6_are_replaced():
+    text = ("robot_ip: ur5e-left.lab, ur_stop_ur5e-left.lab_FAULT, "
+            "tcp://ur5e-left.lab:30004, fe80::1ff:fe23:4567:890a at 12:30:04, ::1, std::vector, "
+            "[2001:db8::7]:29999 and fe80::1ff:fe23:4567:890a")
+    assert report.without_private_data(text, ["ur5e-left.lab", "192.168.1.2", ""]) == (
+        "robot_ip: <robot>, ur_stop_<robot>_FAULT, tcp://<robot>:30004, <IPv6 address 1> at 12:30:04, ::1, std::vector, "
+        "[<IPv6 address 2>]:29999 and <IPv6 address 1>")

@@ -14,8 +14,8 @@ from .errors import CliError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("first", type=pathlib.Path, help="CSV file")
-    parser.add_argument("second", type=pathlib.Path, help="CSV file")
+    parser.add_argument("first", type=pathlib.Path, help="CSV file, or recording of rosbag2")
+    parser.add_argument("second", type=pathlib.Path, help="CSV file, or recording of rosbag2")
     parser.add_argument("fields", nargs="*", help="outputs to compare (default: all that both have)")
     parser.add_argument("--shift", type=float, metavar="S",
                         help="time by which the second recording is moved to later, in s (default: best fit)")
@@ -23,16 +23,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from .recording import Recording  # imported here because --help does not need numpy
+    from .recording import beside, read  # imported here because --help does not need numpy
     from .recording_comparison import compare, report
     from .recording_figure import draw
-    first, second = Recording.read(options.first), Recording.read(options.second)
+    first, second = read(options.first), read(options.second)
     for path, recording in ((options.first, first), (options.second, second)):
         back = recording.first_step_back()
         if back is not None:
             raise CliError(f"{path}: the time of row {back + 1} is earlier than that of the row before: is it a recording of one robot?")
     comparison = compare(first, second, options.fields, options.shift)
     print(report(comparison))
-    name = options.first.with_name(f"{options.first.stem}_{options.second.stem}.png")
+    name = beside(options.first, f"_{beside(options.second).stem}")
     print(draw(comparison.first, options.output or name, comparison.second))
     return 0

@@ -1,6 +1,7 @@
 """Creates a package with a plugin: a command, a dashboard command or an extension."""
 
 import argparse
+import keyword
 import pathlib
 import re
 from typing import Dict
@@ -15,6 +16,7 @@ KINDS = {"command": ("own_action", "command"), "dashboard": ("dashboard",), "ext
 DESCRIPTIONS = {"command": "Turns wrist 3 by an angle and back",
                 "dashboard": "Shows a text on the teach pendant and asks for the robot mode",
                 "extension": "Turns wrist 3 by an angle, by a program on the controller"}
+ROBOT_MEMBERS = ("close", "modes", "record", "start", "state")  # of ur_ros_rtde.Robot, whose other methods are the commands
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
@@ -23,6 +25,15 @@ def _checked(what: str, name: str) -> str:
         raise CliError(f"{what} is \"{name}\": it must be lower case letters, digits and single underscores and begin with a "
                        "letter, as in pick_part")
     return name
+
+
+def _method(kind: str, name: str) -> str:
+    """The name of a plugin is that of its method in Python."""
+    if keyword.iskeyword(name):
+        raise CliError(f"the name is \"{name}\": Python has no method of this name; choose another, as in {name}_part")
+    if kind != "dashboard" and name in ROBOT_MEMBERS:
+        raise CliError(f"the name is \"{name}\": Robot.{name} of ur_ros_rtde is something else; choose another, as in {name}_part")
+    return _checked("the name", name)
 
 
 def _pascal(name: str) -> str:
@@ -38,7 +49,7 @@ def _filled(text: str, words: Dict[str, str]) -> str:
 
 def create(kind: str, name: str, package: str, folder: pathlib.Path, description: str = "") -> pathlib.Path:
     """Creates the package in the existing `folder`. Returns its path."""
-    words = {"my_package": _checked("the package", package or f"{name}_{kind}"), "my_command": _checked("the name", name),
+    words = {"my_package": _checked("the package", package or f"{name}_{kind}"), "my_command": _method(kind, name),
              "MyCommand": _pascal(name), "my_kind": kind, "my_description": description.rstrip(".") or DESCRIPTIONS[kind]}
     escaped = {placeholder: escape(word) for placeholder, word in words.items()}
     target = folder / words["my_package"]

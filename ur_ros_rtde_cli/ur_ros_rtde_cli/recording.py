@@ -101,3 +101,17 @@ def _outputs(columns: Dict[str, np.ndarray]) -> Dict[str, np.ndarray]:
         name = match[1] if match and int(match[2]) == len(elements.get(match[1], [])) else column
         elements.setdefault(name, []).append(values)
     return {name: np.stack(vectors, axis=1) for name, vectors in elements.items()}
+
+
+def beside(path: pathlib.Path, ending: str = "") -> pathlib.Path:
+    """Returns the name of a figure beside a recording."""
+    if path.is_dir():
+        folder = path.resolve()  # "." has no name
+        return folder.with_name(f"{folder.name}{ending}.png")
+    return path.with_name(f"{path.stem}{ending}.png")
+
+
+def read(path: pathlib.Path) -> Recording:
+    """Reads a CSV file, or a recording of rosbag2."""
+    from .bag import is_bag, read_bag  # they need Recording
+    return read_bag(path) if is_bag(path) else Recording.read(path)

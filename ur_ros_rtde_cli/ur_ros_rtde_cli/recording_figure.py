@@ -11,7 +11,8 @@ JOINTS = ("shoulder pan", "shoulder lift", "elbow", "wrist 1", "wrist 2", "wrist
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 COLORS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#8c564b", "#9467bd", "#17becf")
 # Units by the end of the name of an output, and whether its elements are joints. The first that fits is used.
-UNITS = (("_TCP_force", "N, N m", False), ("_TCP_pose", "m, rad", False), ("_TCP_speed", "m/s, rad/s", False), ("force", "N", False),
+UNITS = (("_TCP_force", "N, N m", False), ("_at_TCP", "N, N m", False), ("wrench", "N, N m", False),
+         ("effort", "N m", True), ("_TCP_pose", "m, rad", False), ("_TCP_speed", "m/s, rad/s", False), ("force", "N", False),
          ("_qdd", "rad/s²", True), ("_qd", "rad/s", True), ("_q", "rad", True), ("current", "A", True), ("moment", "N m", True),
          ("temperatures", "°C", True), ("voltage", "V", True), ("accelerometer", "m/s²", False), ("height", "m", False))
 SUFFIXES = (".png", ".pdf", ".svg")

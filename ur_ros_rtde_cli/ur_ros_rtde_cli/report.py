@@ -1,6 +1,7 @@
 """What a bug report needs, as Markdown, without private data."""
 
 import getpass
+import ipaddress
 import os
 import pathlib
 import platform
@@ -22,21 +23,47 @@ DIAGNOSTICS = 1.5  # s; they are published once a second
 ANSWER = 2.0  # s
 
 _IPV4 = re.compile(r"(?<![\d.])(?!127\.|0\.0\.0\.0\b)(?:(?:25[0-5]|2[0-4]\d|1?\d?\d)\.){3}(?:25[0-5]|2[0-4]\d|1?\d?\d)(?!\d|\.\d)")
+_IPV6 = re.compile(r"(?<![\w:.])[0-9a-f]*:[0-9a-f:]+(?![\w:])", re.I)  # times, too
 _MAC = re.compile(r"\b(?:[0-9a-f]{2}:){5}[0-9a-f]{2}\b", re.I)
 _SERIAL_NUMBER = re.compile(r"\b20\d{9}\b")  # of a robot: the year of its production, then nine digits
 
 
-def without_private_data(text: str) -> str:
-    """Replaces the home folder, the names of user and host, and addresses and serial numbers, equal ones by equal words."""
+def without_private_data(text: str, robots: Iterable[str] = ()) -> str:
+    """Replaces the home folder, the names of user, host and robots, addresses and serial numbers, equal ones by equal words."""
     home = str(pathlib.Path.home())
     text = text.replace(home, "~") if home != "/" else text
-    for name, word in ((socket.gethostname(), "<host>"), (_user(), "<user>")):
-        if len(name) > 2 and name != "root":
-            text = re.sub(rf"\b{re.escape(name)}\b", word, text)
-    for pattern, what in ((_IPV4, "address"), (_MAC, "MAC address"), (_SERIAL_NUMBER, "serial number")):
-        for number, value in enumerate(dict.fromkeys(pattern.findall(text)), 1):
-            text = re.sub(rf"(?<![\d.]){re.escape(value)}(?!\d|\.\d)", f"<{what} {number}>", text)
+    names = ((socket.gethostname(), "<host>"), (_user(), "<user>"), *((robot, "<robot>") for robot in robots))
+    for name, word in sorted(names, key=lambda pair: -len(pair[0])):  # a host may be called like the beginning of another
+        if len(name) > 2 and name not in ("root", "localhost") and not _is_address(name):
+            text = re.sub(rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])", word, text)
+    for pattern, what in ((_MAC, "MAC address"), (_IPV4, "address"), (_IPV6, "IPv6 address"), (_SERIAL_NUMBER, "serial number")):
+        text = _numbered(text, pattern, what)
     return text
+
+
+def _numbered(text: str, pattern: "re.Pattern[str]", what: str) -> str:
+    numbers: Dict[str, int] = {}
+
+    def word(match: "re.Match[str]") -> str:
+        value = match.group()
+        if pattern is _IPV6 and not _is_in_a_network(value):
+            return value
+        return f"<{what} {numbers.setdefault(value, len(numbers) + 1)}>"
+
+    return pattern.sub(word, text)
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_in_a_network(text: str) -> bool:
+    """Neither a time of day nor an address of every host."""
+    return _is_address(text) and not ipaddress.ip_address(text).is_loopback and not ipaddress.ip_address(text).is_unspecified
 
 
 def _user() -> str:
@@ -163,14 +190,15 @@ def collect(session: Any, robot: str, say: Callable[[str], None]) -> str:
     session.wait(lambda: len(_driver_nodes(session)) == len(NODES), DISCOVERY)
     parameters = {f"{space.rstrip('/')}/{name}": _parameters(session, f"{space.rstrip('/')}/{name}")
                   for name, space in _driver_nodes(session)}
-    address = robot or next((values["robot_ip"] for values in parameters.values() if values and values.get("robot_ip")), "")
+    addresses = [values["robot_ip"] for values in parameters.values() if values and values.get("robot_ip")]
+    address = robot or next(iter(addresses), "")
     say("reading the state and the diagnostics")
     state, diagnostics = _state(session), list(_diagnostics(session))
     say(f"checking {address}" if address else "no robot to check")
     sections = (("Versions", _versions()), ("Environment", _environment()), ("Nodes and parameters", _node_lines(session, parameters)),
                 ("State", state), ("Diagnostics", diagnostics), ("Robot and network", _robot(address)), ("Log", _logs()))
     title = f"# Report of ur_ros_rtde, {time.strftime('%Y-%m-%d %H:%M UTC', time.gmtime())}\n"
-    return without_private_data("\n".join((title, *(_section(*section) for section in sections))))
+    return without_private_data("\n".join((title, *(_section(*section) for section in sections))), [robot, *addresses])
 
 
 def _may_write(file: pathlib.Path, agreed: bool) -> bool:
