@@ -5,6 +5,7 @@ follow_joint_trajectory of the driver, so the files of ur_moveit_config are used
 """
 
 import pathlib
+import shlex
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from launch.actions import IncludeLaunchDescription
@@ -34,7 +35,9 @@ def start(_context, given):
         raise ArgumentError(f"moveit.launch.py needs packages that are not installed: {', '.join(missing)}. "
                             "Install them with `sudo apt install ros-$ROS_DISTRO-ur` and source the workspace again")
     check_model(given["ur_type"])
-    arguments = {"ur_type": given["ur_type"], "launch_rviz": str(given.get("launch_rviz", True)).lower()}
+    check_calibration(given.get("kinematics_params_file"))
+    arguments = {"ur_type": given["ur_type"], "launch_rviz": str(given.get("launch_rviz", True)).lower(),
+                 "launch_servo": "false"}  # on by default in Humble
     return [robot_state_publisher(given["ur_type"], given.get("kinematics_params_file")),
             *remappings(), included("ur_moveit_config", "ur_moveit.launch.py", arguments)]
 
@@ -47,6 +50,14 @@ def check_model(model):
                             "a newer version")
 
 
+def check_calibration(file):
+    """Up to Humble, ur_moveit_config makes a robot description of its own for move_group, which would be without the calibration."""
+    config = pathlib.Path(get_package_share_directory("ur_moveit_config"), "config")
+    if file and (config / "controllers.yaml").is_file():
+        raise ArgumentError("kinematics_params_file cannot be used with the installed ur_moveit_config, which gives MoveIt the default "
+                            "kinematics: leave it out, or use a launch file of your own that passes the calibrated robot_description")
+
+
 def installed(package):
     try:
         get_package_share_directory(package)
@@ -57,7 +68,7 @@ def installed(package):
 
 def robot_state_publisher(model, kinematics_params_file):
     xacro = PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"])
-    calibration = [" kinematics_params:=", kinematics_params_file] if kinematics_params_file else []
+    calibration = [" kinematics_params:=", shlex.quote(kinematics_params_file)] if kinematics_params_file else []
     description = Command(["xacro ", xacro, " name:=", model, " ur_type:=", model, *calibration])
     return Node(package="robot_state_publisher", executable="robot_state_publisher", output="screen",
                 parameters=[{"robot_description": ParameterValue(description, value_type=str)}])

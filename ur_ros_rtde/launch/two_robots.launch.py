@@ -4,7 +4,7 @@ from launch.actions import GroupAction, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde_launch.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, UNIQUE, ArgumentError
+from ur_ros_rtde_launch.launch_arguments import PER_ROBOT, SIDES, TWO_ROBOTS, ArgumentError, check_differ
 from ur_ros_rtde_launch.launch_support import make_launch_description
 
 
@@ -14,10 +14,7 @@ def generate_launch_description():
 
 def check(context, given):
     values = {**{argument.name: argument.default for argument in TWO_ROBOTS}, **given}
-    for name in UNIQUE:
-        left, right = (values[f"{side}_{name}"].strip("/") for side in SIDES)  # the namespaces "arm" and "/arm" are one
-        if left == right and (left or name != "robot_ip"):  # without addresses, see below
-            raise ArgumentError(f"left_{name} and right_{name} are both \"{left}\", they must differ")
+    check_differ(values)
     others = context.launch_configurations
     if others.get("sim") != "true" and not others.get("params_file"):
         for side in SIDES:

@@ -148,6 +148,17 @@ TEST(PackageStatisticsTest, RestartWithANewConnection)
   EXPECT_EQ(report.longest, 0.0);
 }
 
+TEST(PackageStatisticsTest, CountTheRateFromTheConnectionOn)
+{
+  PackageStatistics statistics;
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  const auto begin = std::chrono::steady_clock::now() - std::chrono::milliseconds(100);
+  for (int i = 0; i <= 50; ++i) {
+    statistics.add(sample(0.002 * i, begin + std::chrono::milliseconds(2 * i)), 500.0);
+  }
+  EXPECT_GT(statistics.report().rate, 100.0) << "83 since the statistics exist";
+}
+
 struct StopRecorderTest : CsvFileTest {
   static constexpr double cycle = 0.002;  // s
 
@@ -268,6 +279,40 @@ TEST_F(StopRecorderTest, KeepsTheNewestFiles)
   EXPECT_EQ(files().size(), StopRecorder::max_files + 1);
   EXPECT_FALSE(std::filesystem::exists(records / "ur_stop_20200101-000010_127.0.0.9_FAULT.csv"));
   EXPECT_TRUE(std::filesystem::exists(records / "other.csv"));
+}
+
+TEST_F(StopRecorderTest, WritesAStopWhoseConnectionBreaks)
+{
+  run(1.0, SafetyMode::normal);
+  run(0.1, SafetyMode::protective_stop);
+  const double broken = time;
+  run(0.5, SafetyMode::protective_stop, 2);
+  EXPECT_NE(message(0), "");
+  ASSERT_EQ(files().size(), 1U);
+  const auto times = column(files()[0], "timestamp");
+  EXPECT_NEAR(times.back(), broken, 2.0 * cycle);
+}
+
+TEST_F(StopRecorderTest, KeepsItsFileIfOthersAreOfTheFuture)
+{
+  std::filesystem::create_directories(records);
+  for (std::size_t i = 0; i < StopRecorder::max_files; ++i) {
+    std::ofstream(records / ("ur_stop_20990101-0000" + std::to_string(10 + i) + "_127.0.0.9_FAULT.csv"));
+  }
+  run(0.5, SafetyMode::normal);
+  run(0.5, SafetyMode::protective_stop);
+  EXPECT_NE(message(0), "");
+  EXPECT_EQ(files().size(), StopRecorder::max_files);
+  EXPECT_FALSE(std::filesystem::exists(records / "ur_stop_20990101-000010_127.0.0.9_FAULT.csv"));
+}
+
+TEST(LogFolderTest, IsAbsolute)
+{
+  const char * const before = std::getenv("ROS_LOG_DIR");
+  const std::string kept = before == nullptr ? "" : before;
+  ::setenv("ROS_LOG_DIR", "log", 1);
+  EXPECT_EQ(log_folder(), std::filesystem::current_path() / "log");
+  before == nullptr ? ::unsetenv("ROS_LOG_DIR") : ::setenv("ROS_LOG_DIR", kept.c_str(), 1);
 }
 
 TEST_F(StopRecorderTest, ReportsAFolderThatCannotBeWritten)

@@ -36,8 +36,9 @@ TEST(JointTargetTest, IsReadByNameInAnyOrderWithPrefixAndOtherJoints)
   }
   message.name.insert(message.name.begin(), "finger_joint");
   message.position.insert(message.position.begin(), 0.02);
-  const auto target = joint_target(message, widest_arm_limits());
+  const auto target = joint_target(message, widest_arm_limits(), "left_");
   ASSERT_TRUE(target) << why_not(target);
+  EXPECT_FALSE(joint_target(message, widest_arm_limits(), "right_")) << "of another arm";
   EXPECT_EQ(target->values, (Vector6{0.7, 0.1, 0.2, 0.3, 0.4, 0.5}));
 }
 
@@ -68,9 +69,20 @@ TEST(PoseTargetTest, MustBeAValidPoseInTheBaseFrame)
   EXPECT_NE(why_not(pose_target(message)).find("frame_id"), std::string::npos);
   message.header.frame_id = "base_link";
   EXPECT_NE(why_not(pose_target(message)).find("base_link"), std::string::npos);
-  message.header.frame_id = "left_base";
   message.pose.position.z = 0.5;
-  EXPECT_TRUE(pose_target(message)) << why_not(pose_target(message));
+  for (const char * frame : {"base", "left_base"}) {
+    message.header.frame_id = frame;
+    EXPECT_TRUE(pose_target(message, "left_")) << why_not(pose_target(message, "left_"));
+  }
+  for (const char * frame : {"right_base", "mobile_base", "left_left_base"}) {
+    message.header.frame_id = frame;
+    EXPECT_NE(why_not(pose_target(message, "left_")).find("also with the prefix left_"), std::string::npos)
+        << frame;
+  }
+  message.header.frame_id = "left_base";
+  EXPECT_NE(why_not(pose_target(message)).find("left_base"), std::string::npos)
+      << "the prefix of another arm";
+  message.header.frame_id = "base";
   message.pose.orientation.w = 0.0;
   EXPECT_NE(why_not(pose_target(message)).find("orientation"), std::string::npos);
 }
@@ -89,6 +101,8 @@ TEST(TwistTargetTest, HasTwoFramesAndMayBeZero)
     message.twist.linear.x = wrong;
     EXPECT_NE(why_not(twist_target(message)).find("twist.linear"), std::string::npos);
   }
+  message.header.frame_id = "right_tool0_controller";
+  EXPECT_NE(why_not(twist_target(message, "left_")).find("right_tool0_controller"), std::string::npos);
   message.header.frame_id = "camera";
   EXPECT_NE(why_not(twist_target(message)).find("camera"), std::string::npos);
 }

@@ -176,6 +176,15 @@ TWO_ROBOTS = (*_robot_arguments("left", 1), *_robot_arguments("right", 2))
 PER_ROBOT = tuple(argument.name[len("left_"):] for argument in _robot_arguments("left", 1))
 UNIQUE = ("namespace", "tf_prefix", "urcap_port", "robot_ip", "sim_ip")  # must differ between the robots
 
+
+def check_differ(values: Dict[str, Any]) -> None:
+    """Raises ArgumentError if what must be different is the same for both robots. `values` are those of TWO_ROBOTS."""
+    for name in UNIQUE:
+        left, right = (str(values[f"{side}_{name}"]).strip("/") for side in SIDES)  # the namespaces "arm" and "/arm" are one
+        if left == right and (left or name != "robot_ip"):  # without addresses, they are simulated
+            raise ArgumentError(f"left_{name} and right_{name} are both \"{left}\", they must differ")
+
+
 # Arguments of moveit.launch.py. The other arguments of driver.launch.py are passed to the driver.
 MOVEIT = (
     Argument("ur_type", None, "Model of the arm.", MODELS),

@@ -1,6 +1,7 @@
 """Shows an arm in RViz: robot_state_publisher with the URDF and the joint states of the driver, and RViz."""
 
 import pathlib
+import shlex
 from typing import Dict
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
@@ -60,5 +61,6 @@ def ur_description(values: Dict[str, str], options: Options) -> Command:
         raise DescriptionError("launch argument meshes is \"true\": the URDF of ur_description has no mounting pose and no tool; omit "
                                "parent, xyz, rpy and tool, or meshes:=true")
     file, name = values["kinematics_params_file"], options.model.name
+    kinematics = f" kinematics_params:={shlex.quote(file)}" if file else ""
     return Command(["xacro ", PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"]), f" name:={name}",
-                    f" ur_type:={name}", f" tf_prefix:=\"{options.tf_prefix}\"", f" kinematics_params:={file}" if file else ""])
+                    f" ur_type:={name}", f" tf_prefix:=\"{options.tf_prefix}\"", kinematics])

@@ -1,14 +1,15 @@
-"""Moving down until a force, in three ways: a plugin, two programs that are sent to the robot, one program with a loop. Each statement of
-docs/use/plugin_or_script.md about them is tested here."""
+"""Moving down until a force: a plugin, two programs that are sent to the robot, one program with a loop, and the command of the driver.
+Each statement of docs/use/plugin_or_script.md about them is tested here."""
 
 import csv
 import signal
 
 import pytest
+from geometry_msgs.msg import Twist, Vector3
 from support import HOME, Process, find_program, wait_for
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
-from ur_ros_rtde_msgs.action import MoveJ
+from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 THRESHOLD = 20.0  # N
@@ -24,6 +25,11 @@ def above_a_surface(robot, simulator):
 
 def with_the_plugin(robot, simulator):
     robot.send(MoveDownUntilForce, "move_down_until_force").succeeded(30.0)
+
+
+def with_the_command(robot, simulator):
+    robot.send(MoveUntilForce, "move_until_force", twist=Twist(linear=Vector3(z=-0.1)), acceleration=0.5, distance=0.3,
+               threshold=THRESHOLD).succeeded(30.0)
 
 
 def with_two_programs(robot, simulator):
@@ -65,7 +71,7 @@ def reaction(rows):
     return slower - contact, max(force for _, force, _ in rows)
 
 
-@pytest.mark.parametrize("way", [with_the_plugin, with_two_programs, with_one_program])
+@pytest.mark.parametrize("way", [with_the_plugin, with_two_programs, with_one_program, with_the_command])
 def test_the_arm_stops_at_the_surface(robot, simulator, above_a_surface, tmp_path, way):
     rows, lost = record(robot, tmp_path / "run.csv", way, simulator)
     duration, force = reaction(rows)

@@ -29,7 +29,7 @@ class CommandPlugin {
   /// No code of the plugin runs after this function has returned. Its goals have ended before.
   virtual void stop_action_server() = 0;
   /// The URScript that this plugin adds to the control program, if any; see Extension<A> (extension.hpp).
-  /// Called once, before any action server is started.
+  /// Called before any action server is started, and returns the same each time.
   virtual std::optional<ScriptExtension> script_extension() const { return std::nullopt; }
 };
 

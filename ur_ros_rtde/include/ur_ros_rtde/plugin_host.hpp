@@ -57,6 +57,7 @@ class CommandHost : public PluginHost {
  public:
   struct Options {
     bool preempt_when_busy = false;
+    std::string tf_prefix{};  ///< of the names of joints and frames
     bool stop_when_client_lost = true;
     bool servers_on_demand = false;
   };

@@ -6,7 +6,7 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// 2 s at 500 Hz. Further intervals are ignored until the next report.
+/// 2 s at 500 Hz. Further intervals are ignored until the next report, but counted.
 constexpr std::size_t capacity = 1000;
 }  // namespace
 
@@ -21,8 +21,9 @@ void PackageStatistics::add(const Sample & sample, double frequency)
   const std::lock_guard lock(mutex_);
   ++counts_.received_total;
   if (counts_.received_total > 1 && sample.link == link_) {
+    ++received_;
     if (intervals_.size() < capacity) {
-      intervals_.push_back(std::chrono::duration<double>(sample.received - received_).count());
+      intervals_.push_back(std::chrono::duration<double>(sample.received - newest_).count());
     }
     const double cycles = std::round((sample.controller_time - controller_time_) * frequency);
     if (cycles > 1.0) {
@@ -31,8 +32,13 @@ void PackageStatistics::add(const Sample & sample, double frequency)
       counts_.lost_total += lost;
     }
   }
+  if (sample.link != link_) {  // the rate is that since the connection
+    began_ = sample.received;
+    received_ = 0;
+    intervals_.clear();
+  }
   link_ = sample.link;
-  received_ = sample.received;
+  newest_ = sample.received;
   controller_time_ = sample.controller_time;
 }
 
@@ -41,7 +47,7 @@ PackageStatistics::Report PackageStatistics::report()
   const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   Report report = counts_;
-  report.rate = static_cast<double>(intervals_.size()) / std::chrono::duration<double>(now - began_).count();
+  report.rate = static_cast<double>(received_) / std::chrono::duration<double>(now - began_).count();
   if (!intervals_.empty()) {
     sorted_ = intervals_;
     std::ranges::sort(sorted_);
@@ -52,6 +58,7 @@ PackageStatistics::Report PackageStatistics::report()
     report.longest = sorted_.back();
   }
   counts_.lost = 0;
+  received_ = 0;
   intervals_.clear();
   began_ = now;
   return report;

@@ -33,7 +33,8 @@ class PackageStatistics {
   std::vector<double> intervals_;  ///< s; of a fixed capacity
   std::vector<double> sorted_;
   std::chrono::steady_clock::time_point began_;
-  std::chrono::steady_clock::time_point received_;
+  std::chrono::steady_clock::time_point newest_;
+  std::uint64_t received_ = 0;  ///< since began_
   double controller_time_ = 0.0;
   std::uint32_t link_ = 0;
   Report counts_;

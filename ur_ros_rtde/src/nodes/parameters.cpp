@@ -198,7 +198,7 @@ RobotStateReceiver::Options declare_state_options(rcl_cxx::Node & node)
 CommandServerParameters declare_command_server(rcl_cxx::Node & node)
 {
   CommandServerParameters parameters;
-  parameters.tf_prefix = declare_tf_prefix(node);
+  parameters.tf_prefix = parameters.goals.tf_prefix = declare_tf_prefix(node);
   RobotOptions & robot = parameters.robot;
   robot.address = declare_robot_ip(node);
   robot.control_mode =

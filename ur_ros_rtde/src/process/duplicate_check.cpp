@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -11,6 +12,8 @@ namespace ur_ros_rtde {
 namespace {
 /// Longest time for discovery. After that, this process is in use and must not exit.
 constexpr std::chrono::seconds start_phase{10};
+/// Begins the message of a process that runs for longer, whatever the clocks of both hosts say.
+constexpr std::string_view is_running = "running: ";
 constexpr const char * remedy =
     "stop one of them, or use a different namespace (--ros-args -r __ns:=/…) or ROS_DOMAIN_ID";
 
@@ -57,25 +60,43 @@ std::optional<std::string> DuplicateCheck::find_older()
 
 void DuplicateCheck::on_instance(const Instance & other)
 {
-  if (age(other) == age(own_)) {
+  if (is_own(other)) {
     return;
   }
-  if (std::chrono::steady_clock::now() - begin_ > start_phase) {
-    RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", conflict_with(other), remedy);
-  } else if (is_older(other)) {
-    reject_(rejection(other));
+  if (std::chrono::steady_clock::now() - begin_ <= start_phase) {
+    if (is_older(other)) {
+      reject_(rejection(other));
+    }
+    return;
   }
+  RCL_CXX_ERROR(node_.get_logger(), "{}; both answer the same clients: {}", conflict_with(other), remedy);
+  if (!other.frame_id.starts_with(is_running)) {  // otherwise it knows
+    publisher_->publish(own_running());
+  }
+}
+
+DuplicateCheck::Instance DuplicateCheck::own_running() const
+{
+  Instance running = own_;
+  running.frame_id = fmt::format("{}{}", is_running, own_.frame_id);
+  return running;
+}
+
+bool DuplicateCheck::is_own(const Instance & other) const
+{
+  return age(other) == age(own_) || age(other) == age(own_running());
 }
 
 bool DuplicateCheck::is_older(const Instance & other) const
 {
-  return age(other) < age(own_);
+  return !is_own(other) && (other.frame_id.starts_with(is_running) || age(other) < age(own_));
 }
 
 std::string DuplicateCheck::conflict_with(const Instance & other) const
 {
-  return fmt::format("another node with the name {} is already running ({})",
-                     node_.get_fully_qualified_name(), other.frame_id);
+  return fmt::format(
+      "another node with the name {} is already running ({})", node_.get_fully_qualified_name(),
+      other.frame_id.starts_with(is_running) ? other.frame_id.substr(is_running.size()) : other.frame_id);
 }
 
 std::string DuplicateCheck::rejection(const Instance & other) const

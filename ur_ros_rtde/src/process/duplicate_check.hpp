@@ -23,6 +23,8 @@ class DuplicateCheck {
  private:
   using Instance = std_msgs::msg::Header;
   void on_instance(const Instance & other);
+  Instance own_running() const;
+  bool is_own(const Instance & other) const;
   bool is_older(const Instance & other) const;
   std::string conflict_with(const Instance & other) const;
   std::string rejection(const Instance & other) const;

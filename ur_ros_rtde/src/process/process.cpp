@@ -118,7 +118,8 @@ void spin_if_unique(const rcl_cxx::Context::SharedPtr & context,
 /// a process that must not start answers nothing. Returns the reason not to start, or nothing after the
 /// shutdown.
 std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
-                                       const DuplicateChecks & checks, Clock::time_point start)
+                                       const DuplicateChecks & checks, Clock::time_point start,
+                                       bool & has_failed)
 {
   const auto duplicate = std::async(std::launch::async, [&] {
                            return start_if_unique(*context, servers, checks, start);
@@ -145,12 +146,14 @@ std::optional<std::string> run_servers(const rcl_cxx::Context::SharedPtr & conte
     }
     return duplicate.get();
   } catch (...) {
+    has_failed = context->ok();  // otherwise the process was stopped during its start
     context->shutdown("a node could not start");
     throw;
   }
 }
 
-void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & rejected)
+void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers, std::atomic<bool> & rejected,
+           bool & has_failed)
 {
   const auto begin = Clock::now();
   std::vector<std::unique_ptr<HostNameLock>> names;
@@ -162,7 +165,7 @@ void serve(const rcl_cxx::Context::SharedPtr & context, const Servers & servers,
   check_parameter_names(servers);
   const auto callback = context->add_pre_shutdown_callback([&servers] { close_servers(servers); });
   const auto start = begin + (taken ? Clock::duration(local_discovery_time) : discovery_time);
-  if (const auto why = run_servers(context, servers, checks, start)) {
+  if (const auto why = run_servers(context, servers, checks, start, has_failed)) {
     reject_start(servers.front()->node(), *why, rejected);
   }
   context->remove_shutdown_callback(callback);
@@ -174,6 +177,7 @@ int run_process(int argc, char ** argv, const MakeServers & make)
   constexpr int wrong_arguments = 2;
   rcl_cxx::Context::SharedPtr context;
   std::atomic<bool> rejected{false};
+  bool has_failed = false;
   try {
     use_fastdds_profile();
     context = std::make_shared<rcl_cxx::Context>(argc, argv);
@@ -184,13 +188,13 @@ int run_process(int argc, char ** argv, const MakeServers & make)
     }
     Servers servers = make(context);
     report_fastdds_profile(servers.front()->node().get_logger());
-    serve(context, servers, rejected);
+    serve(context, servers, rejected, has_failed);
     while (!servers.empty()) {
       servers.pop_back();
     }
     return rejected ? wrong_arguments : 0;
   } catch (const std::exception & error) {
-    if (context && !context->ok()) {
+    if (context && !context->ok() && !has_failed) {
       // The process was stopped during its start, so the start failed.
       return rejected ? wrong_arguments : 0;
     }

@@ -33,7 +33,7 @@ constexpr VectorColumn vectors[] = {
     {"actual_qd", &Sample::actual_qd},
     {"actual_current", &Sample::actual_current},
     {"actual_TCP_pose", &Sample::actual_tcp_pose},
-    {"actual_TCP_force", &Sample::actual_tcp_force},
+    {"wrench_at_TCP", &Sample::actual_tcp_force},
 };
 
 struct NumberColumn {
@@ -73,10 +73,10 @@ std::filesystem::path log_folder()
 {
   const auto home = from_environment("HOME");
   if (auto folder = from_environment("ROS_LOG_DIR"); !folder.empty()) {
-    return *folder.begin() == "~" ? home / folder.lexically_relative("~") : folder;
+    return std::filesystem::absolute(*folder.begin() == "~" ? home / folder.lexically_relative("~") : folder);
   }
   const auto ros_home = from_environment("ROS_HOME");
-  return (ros_home.empty() ? home / ".ros" : ros_home) / "log";
+  return std::filesystem::absolute((ros_home.empty() ? home / ".ros" : ros_home) / "log");
 }
 
 StopRecorder::StopRecorder(std::filesystem::path folder, std::string name, LogFunction log)
@@ -124,14 +124,16 @@ void StopRecorder::add(const Sample & sample)
   const std::lock_guard lock(mutex_);
   const bool same_link = sample.link == std::exchange(last_link_, sample.link);
   const SafetyMode before = std::exchange(last_mode_, sample.safety_mode);
+  if (!same_link && stop_) {  // the connection has broken soon after it
+    complete_ = std::exchange(stop_, std::nullopt);
+    changed_.notify_all();
+  }
   if (complete_) {
     return;  // the rows are kept until the thread has them
   }
   ring_[next_] = row_of(sample);
   next_ = (next_ + 1) % ring_.size();
-  if (!same_link) {
-    stop_.reset();
-  } else if (!stop_ && is_recorded(sample.safety_mode) && !is_recorded(before)) {
+  if (same_link && !stop_ && is_recorded(sample.safety_mode) && !is_recorded(before)) {
     stop_ = Stop{sample.safety_mode, sample.controller_time};
   }
   if (stop_ && sample.controller_time >= stop_->time + time_after) {
@@ -146,7 +148,10 @@ void StopRecorder::serve(const std::stop_token & stop)
     {
       std::unique_lock lock(mutex_);
       if (!changed_.wait(lock, stop, [&] { return complete_.has_value(); })) {
-        return;
+        complete_ = std::exchange(stop_, std::nullopt);  // so far
+        if (!complete_) {
+          return;
+        }
       }
     }
     try {
@@ -204,21 +209,21 @@ Expected<std::string> StopRecorder::write(const Stop & stop, const std::vector<R
   if (const Status closed = file->close(); !closed) {
     return tl::unexpected(closed.error());
   }
-  remove_old_files();
+  remove_old_files(path);
   return path.string();
 }
 
-void StopRecorder::remove_old_files() const
+void StopRecorder::remove_old_files(const std::filesystem::path & newest) const
 {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (const auto & entry : std::filesystem::directory_iterator(folder_, error)) {
-    if (entry.path().filename().string().starts_with(prefix)) {
+    if (entry.path() != newest && entry.path().filename().string().starts_with(prefix)) {
       files.push_back(entry.path());
     }
   }
   std::sort(files.begin(), files.end(), std::greater<>());  // the names begin with the time
-  for (std::size_t i = max_files; i < files.size(); ++i) {
+  for (std::size_t i = max_files - 1; i < files.size(); ++i) {
     std::filesystem::remove(files[i], error);
   }
 }

@@ -54,7 +54,7 @@ class StopRecorder {
   void write_complete();
   /// Returns the path. `around`: the rows around the stop, oldest first.
   Expected<std::string> write(const Stop & stop, const std::vector<Row> & around) const;
-  void remove_old_files() const;
+  void remove_old_files(const std::filesystem::path & newest) const;
 
   const std::filesystem::path folder_;
   const std::string name_;

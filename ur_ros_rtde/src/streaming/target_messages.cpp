@@ -1,6 +1,7 @@
 #include "ur_ros_rtde/target_messages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -21,15 +22,27 @@ Expected<StreamTarget> target_if_valid(const Check & check, const std::vector<do
   return target;
 }
 
-Status check_frame(const std::string & frame_id, std::string_view frames, bool known)
+/// Whether `given` is a name of this arm, with its prefix or without one.
+bool is_name(const std::string & given, std::string_view name, const std::string & prefix)
 {
-  return known ? Status()
-               : failure(ErrorCode::invalid_goal,
-                         fmt::format("header.frame_id is \"{}\", it may be {}", frame_id, frames));
+  return given == name ||
+         (given.starts_with(prefix) && std::string_view(given).substr(prefix.size()) == name);
+}
+
+Status check_frame(const std::string & frame_id, const std::vector<std::string_view> & frames,
+                   const std::string & prefix)
+{
+  if (std::any_of(frames.begin(), frames.end(), [&](auto name) { return is_name(frame_id, name, prefix); })) {
+    return {};
+  }
+  return failure(ErrorCode::invalid_goal,
+                 fmt::format("header.frame_id is \"{}\", it may be {}{}", frame_id, fmt::join(frames, " or "),
+                             prefix.empty() ? "" : fmt::format(", also with the prefix {}", prefix)));
 }
 }  // namespace
 
-Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits)
+Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message, const ArmLimits & limits,
+                                    const std::string & prefix)
 {
   Check check;
   check.that(message.position.size() == message.name.size(),
@@ -37,7 +50,7 @@ Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message
                          message.name.size(), message.position.size()));
   std::vector<double> positions(joint_names().size());
   for (std::size_t i = 0; i < positions.size() && check.ok(); ++i) {
-    const auto named = [&](const std::string & name) { return name.ends_with(joint_names()[i]); };
+    const auto named = [&](const std::string & name) { return is_name(name, joint_names()[i], prefix); };
     const auto found = std::find_if(message.name.begin(), message.name.end(), named);
     check.that(found != message.name.end(),
                fmt::format("the message has no position of {}", joint_names()[i]));
@@ -52,10 +65,10 @@ Expected<StreamTarget> joint_target(const sensor_msgs::msg::JointState & message
   return target_if_valid(check, positions);
 }
 
-Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & message)
+Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & message,
+                                   const std::string & prefix)
 {
-  const std::string & frame = message.header.frame_id;
-  if (Status known = check_frame(frame, "base", frame.ends_with("base")); !known) {
+  if (Status known = check_frame(message.header.frame_id, {"base"}, prefix); !known) {
     return tl::unexpected(known.error());
   }
   Check check;
@@ -63,12 +76,12 @@ Expected<StreamTarget> pose_target(const geometry_msgs::msg::PoseStamped & messa
   return target_if_valid(check, check.ok() ? to_ur(message.pose) : std::vector<double>(6));
 }
 
-Expected<StreamTarget> twist_target(const geometry_msgs::msg::TwistStamped & message)
+Expected<StreamTarget> twist_target(const geometry_msgs::msg::TwistStamped & message,
+                                    const std::string & prefix)
 {
   const std::string & frame = message.header.frame_id;
-  const bool in_tool = frame.ends_with("tool0_controller");
-  if (Status known = check_frame(frame, "base or tool0_controller", in_tool || frame.ends_with("base"));
-      !known) {
+  const bool in_tool = is_name(frame, "tool0_controller", prefix);
+  if (Status known = check_frame(frame, {"base", "tool0_controller"}, prefix); !known) {
     return tl::unexpected(known.error());
   }
   const std::vector<double> values = to_ur(message.twist);

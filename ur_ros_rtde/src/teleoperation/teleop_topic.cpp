@@ -240,7 +240,8 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
     }
     log_(LogLevel::info, fmt::format("{}: teleoperation started", topic_));
     Run run(RunContext{host_.robot(), stop_request, &lease_});
-    const Outcome outcome = settle(follow(run, session, latency));
+    const Activities before = host_.robot().activities() & outlasting_modes;
+    const Outcome outcome = settle(follow(run, session, latency), before);
     lease_.release();
     return outcome;
   } catch (const RobotError & error) {
@@ -250,9 +251,13 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
   }
 }
 
-Outcome TeleopTopic::settle(const Error & why) const
+Outcome TeleopTopic::settle(const Error & why, Activities active_before) const
 {
-  const auto stopped = host_.robot().end_motion(lease_, options_.stop_options());
+  StopOptions options = options_.stop_options();
+  if (why.code == ErrorCode::timeout) {  // the regular end
+    options.keep = active_before;
+  }
+  const auto stopped = host_.robot().end_motion(lease_, options);
   return stopped ? Outcome(why)
                  : Outcome::failure(why.code, fmt::format("{}; standstill is not confirmed: {}", why.message,
                                                           stopped.error().message));

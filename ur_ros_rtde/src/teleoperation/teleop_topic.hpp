@@ -105,7 +105,8 @@ class TeleopTopic {
   Status check_timeout(const Message & message, std::uint64_t session) const;
   Status set_target(TargetStream & stream, const Message & message, std::uint64_t session) const;
   /// Stops the arm. The outcome has the reason, and whether standstill is confirmed.
-  Outcome settle(const Error & why) const;
+  /// Without further messages, a mode that was active before goes on, as after a motion that succeeds.
+  Outcome settle(const Error & why, Activities active_before) const;
   Message newest() const;
   void log_hindrance(Hindrance hindrance) const;
   void log_ignored(const Error & why) const;

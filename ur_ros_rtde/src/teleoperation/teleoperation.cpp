@@ -14,17 +14,17 @@ Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, 
   joint_messages_ = host.node().create_subscription<sensor_msgs::msg::JointState>(
       "servo_joint", newest_only,
       [this, &host](const sensor_msgs::msg::JointState & m, const rcl_cxx::MessageInfo & info) {
-        joints_.on_message(joint_target(m, host.limits()), info);
+        joints_.on_message(joint_target(m, host.limits(), host.options().tf_prefix), info);
       });
   pose_messages_ = host.node().create_subscription<geometry_msgs::msg::PoseStamped>(
       "servo_pose", newest_only,
-      [this](const geometry_msgs::msg::PoseStamped & m, const rcl_cxx::MessageInfo & info) {
-        poses_.on_message(pose_target(m), info);
+      [this, &host](const geometry_msgs::msg::PoseStamped & m, const rcl_cxx::MessageInfo & info) {
+        poses_.on_message(pose_target(m, host.options().tf_prefix), info);
       });
   twist_messages_ = host.node().create_subscription<geometry_msgs::msg::TwistStamped>(
       "twist", newest_only,
-      [this](const geometry_msgs::msg::TwistStamped & m, const rcl_cxx::MessageInfo & info) {
-        twists_.on_message(twist_target(m), info);
+      [this, &host](const geometry_msgs::msg::TwistStamped & m, const rcl_cxx::MessageInfo & info) {
+        twists_.on_message(twist_target(m, host.options().tf_prefix), info);
       });
 }
 

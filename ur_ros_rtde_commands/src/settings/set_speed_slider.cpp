@@ -1,6 +1,7 @@
 #include <cmath>
 #include <ur_ros_rtde_msgs/action/set_speed_slider.hpp>
 
+#include "settings/setting_helpers.hpp"
 #include "ur_ros_rtde/command.hpp"
 
 namespace ur_ros_rtde {
@@ -15,7 +16,9 @@ class SetSpeedSlider : public Command<ur_ros_rtde_msgs::action::SetSpeedSlider> 
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.io()->setSpeedSlider(goal.fraction);
+    if (!run.io()->setSpeedSlider(goal.fraction)) {
+      return send_failure();
+    }
     const auto is_set = [&] { return std::abs(run.state().target_speed_fraction - goal.fraction) < 0.01; };
     return run.expect(is_set, std::chrono::seconds(1), "the robot still reports another speed");
   }

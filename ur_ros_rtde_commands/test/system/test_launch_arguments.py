@@ -10,7 +10,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
 from support import Process, find_program, wait_for
 from ur_ros_rtde_launch import launch_arguments
-from ur_ros_rtde_launch.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_name, to_values
+from ur_ros_rtde_launch.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_differ, check_name, to_values
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
 ROS_PARAMETERS = {"use_sim_time"}
@@ -147,6 +147,16 @@ def test_every_default_and_every_choice_is_a_valid_value():
         for text in (argument.default_text, *argument.text_choices):
             if text != "[]":
                 argument.value(text)
+
+
+def test_two_robots_must_differ():
+    values = {argument.name: argument.default for argument in TWO_ROBOTS}
+    check_differ(values)
+    for name, value in (("urcap_port", 50003), ("sim_ip", "127.0.0.5"), ("robot_ip", "192.168.0.10"), ("tf_prefix", "arm_")):
+        with pytest.raises(ArgumentError, match=f"left_{name} and right_{name} are both"):
+            check_differ({**values, f"left_{name}": value, f"right_{name}": value})
+    with pytest.raises(ArgumentError, match="left_namespace and right_namespace"):
+        check_differ({**values, "left_namespace": "arm", "right_namespace": "/arm"})
 
 
 @pytest.mark.parametrize("name, text, message", [

@@ -195,4 +195,4 @@ def test_queries_are_rejected_in_a_protective_stop(robot, simulator):
 
     wait_for(lambda: rejection_code() == ErrorCode.PROTECTIVE_STOP, 15.0, "the rejection")
     robot.send(MakeReady, "make_ready").succeeded()
-    assert query(robot, GetPose, "get_tcp_offset").frame == "tool0_controller"
+    assert query(robot, GetPose, "get_tcp_offset").frame == "tool0"

@@ -1,7 +1,11 @@
 """Several drivers or another client on one robot: only one of them moves the arm, and the others report the conflict."""
 
+import time
+
 import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from robot_fixtures import make_ready
+from std_msgs.msg import Header
 from support import FEW_PLUGINS, HOME, Client, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SpeedJ
@@ -66,6 +70,32 @@ def test_a_node_does_not_start_if_its_name_is_taken(name, first, simulator):
     second = start_node(name, simulator.address, namespace="first")
     assert second.wait(30.0) == 2
     assert f"/first/{name} is already running" in second.output()
+
+
+def test_an_older_process_whose_clock_is_ahead_is_older(simulator, first_client):
+    message = Header(frame_id="running: process 7 on a host whose clock is an hour ahead")
+    message.stamp.sec = int(time.time()) + 3600
+    publisher = first_client.node.create_publisher(Header, "command_server/_instance",
+                                                   QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    publisher.publish(message)
+    second = start_node("command_server", simulator.address, FEW_PLUGINS, namespace="first")
+    assert second.wait(30.0) == 2 and "process 7 on a host whose clock" in second.output(), second.output()
+    first_client.node.destroy_publisher(publisher)
+
+
+def test_a_process_that_runs_tells_it_to_one_that_appears(simulator, processes, first_client):
+    processes(start_node("command_server", simulator.address, FEW_PLUGINS, namespace="first"))
+    qos = QoSProfile(depth=8, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    instances = []
+    subscription = first_client.node.create_subscription(Header, "command_server/_instance", instances.append, qos)
+    own = wait_for(lambda: instances and instances[-1], 10.0, "its message")
+    time.sleep(max(0.0, own.stamp.sec + 11.0 - time.time()))  # until it counts as running
+    publisher = first_client.node.create_publisher(Header, "command_server/_instance", qos)
+    newcomer = Header(frame_id="process 8 on another host")
+    publisher.publish(newcomer)
+    wait_for(lambda: any(message.frame_id == f"running: {own.frame_id}" for message in instances), 10.0, f"the answer: {instances}")
+    for endpoint, destroy in ((publisher, first_client.node.destroy_publisher), (subscription, first_client.node.destroy_subscription)):
+        destroy(endpoint)
 
 
 def test_a_killed_driver_can_be_restarted_at_once(first, simulator, processes):

@@ -14,8 +14,8 @@ from sensor_msgs.msg import JointState
 from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, start_node, wait_for
 from trajectories import TargetRecorder
 
-from ur_ros_rtde_msgs.action import MoveJ, Stop
-from ur_ros_rtde_msgs.msg import ErrorCode
+from ur_ros_rtde_msgs.action import ForceMode, MoveJ, Stop
+from ur_ros_rtde_msgs.msg import ActiveModes, ErrorCode
 
 MEASURES_TIME = True
 TIMEOUT = 0.5  # s; allows for delays of the publisher by other tests
@@ -133,7 +133,7 @@ def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot, simulator):
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
-@pytest.mark.parametrize("frame, sign", [("base", 1.0), ("tool0_controller", -1.0), ("left_base", 1.0)])
+@pytest.mark.parametrize("frame, sign", [("base", 1.0), ("tool0_controller", -1.0)])
 def test_twist_moves_along_the_axes_of_its_frame(robot, frame, sign):
     start = get_tcp_pose(robot).position
     with Publisher(robot, TwistStamped, "twist", lambda t: twist_message(frame, 0.05)):
@@ -212,6 +212,27 @@ def test_with_on_busy_preempt_a_goal_preempts_a_topic(addresses, processes):
             client.send(MoveJ, "move_j", joint_positions=home_plus(0.3), speed=1.0).succeeded()
             time.sleep(0.5)
             assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.3), abs=0.01)
+    finally:
+        client.close()
+
+
+def test_the_end_of_the_messages_leaves_force_mode_on_and_an_invalid_one_ends_it(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    processes(start_node("driver", simulator.address, "plugins:=[move_j,stop,force_mode_start]", "ur_type:=ur10e",
+                         f"stream_timeout:={TIMEOUT}", namespace="pressing"))
+    client = Client("pressing")
+    active = client.subscribe(ActiveModes, "active_modes", transient_local=True)
+    try:
+        make_ready(client)
+        client.send(ForceMode, "force_mode_start", compliant=[True, False, False, False, False, False]).succeeded()
+        wait_for(lambda: active and "force_mode" in active[-1].names, 10.0, "force mode")
+        with Publisher(client, TwistStamped, "twist", lambda t: twist_message("base", 0.02), duration=1.0):
+            wait_for(lambda: get_joint_speed(client) > 0.005, 10.0, "the arm to move")
+        wait_for(lambda: get_joint_speed(client) < 0.001, 10.0, "the end of teleoperation")
+        pause()
+        assert "force_mode" in active[-1].names, "as after a motion that succeeds"
+        with Publisher(client, TwistStamped, "twist", lambda t: twist_message("base", 0.02 if t < 1.0 else 3.5)):
+            wait_for(lambda: "force_mode" not in active[-1].names, 15.0, "the end of force mode")
     finally:
         client.close()
 

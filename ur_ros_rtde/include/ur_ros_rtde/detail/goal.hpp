@@ -21,7 +21,7 @@ class PluginHost;
 using GoalQuery = std::function<Status()>;
 
 /// One goal, from its request to its only result. It owns everything that belongs to it alone: the request to
-/// stop it, what a derived class adds (a lease), and the result. docs/use/goals.md shows its life.
+/// stop it, what a derived class adds (a lease), and the result. docs/internals/goals.md shows its life.
 class Goal : public std::enable_shared_from_this<Goal> {
  public:
   using Handle = rcl_cxx::ServerGoalHandle;

@@ -10,7 +10,7 @@ class GetTcpOffset : public QueryCommand<ur_ros_rtde_msgs::action::GetPose> {
   Outcome run(const Goal &, Run & run) override
   {
     run.result().pose = query(run, [](auto & control) { return to_pose(control.getTCPOffset()); });
-    run.result().frame = "tool0_controller";
+    run.result().frame = "tool0";  // the flange, not the TCP
     return Outcome::success();
   }
 };
