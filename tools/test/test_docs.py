@@ -165,7 +165,7 @@ def test_the_tables_of_parameters_match_the_launch_arguments():
 
 
 def test_a_dead_link_is_an_error(site, tmp_path, capfd):
-    page = docs.FOLDER / "source" / "docs" / "use" / "goals.md"
+    page = docs.FOLDER / "source" / "docs" / "internals" / "goals.md"
     page.write_text(page.read_text() + "\n[nowhere](nowhere.md#there)\n")
     with pytest.raises(console.Failure):
         docs.run_sphinx(docs.ensure_sphinx(), docs.FOLDER / "source", tmp_path / "html")

@@ -26,7 +26,7 @@ struct MotionProgress {
   bool finished() const { return started && !running && at_rest && !program_ended; }
 };
 
-/// What stopped the arm, in the order in which a stop takes them: docs/use/goals.md, "Means of a stop".
+/// What stopped the arm, in the order in which a stop takes them: docs/internals/goals.md, "Means of a stop".
 enum class StopMeans {
   nothing_moved,     ///< the arm was at rest and nothing was started
   stopped_by_robot,  ///< a protective, safeguard or emergency stop, or the end of its program
