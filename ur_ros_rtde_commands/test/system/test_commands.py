@@ -259,6 +259,7 @@ def test_an_emergency_stop_aborts_the_goal(robot, simulator):
     try:
         status, result = goal.wait_for_result()
         assert status == GoalStatus.STATUS_ABORTED and result.error_code == ErrorCode.EMERGENCY_STOP, result.message
+        wait_for(lambda: simulator.state()["program"]["state"] == "STOPPED", 10.0, "the end of the program that the robot has paused")
     finally:
         simulator.control("emergency_stop", pressed=False)
         simulator.control("power", to="running")

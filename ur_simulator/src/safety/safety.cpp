@@ -165,6 +165,10 @@ void Safety::press_emergency_stop(bool system)
   inputs_.emergency_stop = mode;
   if (safety_mode_ != mode && !is_failure(safety_mode_)) {
     stop_and_cut_power(mode, "emergency stop", std::nullopt);
+    // `play` continues the motion (ur_dashboard_msgs, SetMode.action; Universal_Robots_ROS_Driver, issue
+    // 170).
+    actions_.stop_program = false;
+    actions_.pause_program = true;
   }
 }
 

@@ -19,9 +19,9 @@ namespace ur_simulator {
 /// Actions that the safety system requests from the rest of the controller in this cycle.
 struct SafetyActions {
   std::optional<double> stop_arm;  ///< Arm::stop_all() with this deceleration, rad/s^2
-  bool pause_program = false;      ///< a protective or safeguard stop began
+  bool pause_program = false;      ///< a protective, safeguard or emergency stop began
   bool resume_program = false;     ///< the safeguard stop that paused it has ended
-  bool stop_program = false;       ///< emergency stop, violation, fault, power off
+  bool stop_program = false;       ///< violation, fault, power off
 };
 
 /// The error says why the request is rejected, worded as for the robot's log.
