@@ -209,13 +209,24 @@ def test_poses_are_arrays(arm):
     assert np.allclose(arm.state.tcp_pose[:3], start[:3] + [0.0, 0.05, 0.0], atol=1e-3)
 
 
+@contextlib.contextmanager
+def signaled(code, number, simulator):
+    """A Python program that gets the signal as soon as it moves the arm, and is killed at the end."""
+    program = Process([sys.executable, "-c", code])
+    try:
+        wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
+        program.signal(number)
+        yield program
+    finally:
+        program.kill()
+
+
 @pytest.mark.parametrize("number, code", [(signal.SIGTERM, 128 + signal.SIGTERM), (signal.SIGHUP, 128 + signal.SIGHUP),
                                           (signal.SIGINT, -signal.SIGINT)])
 def test_a_signal_stops_the_arm_before_the_program_ends(arm, simulator, number, code):
-    program = Process([sys.executable, "-c", f"from ur_ros_rtde import Robot\nwith Robot(timeout=20.0) as arm: arm.move_j({AWAY}, {SLOW})"])
-    wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
-    program.signal(number)
-    assert program.wait(20.0) == code, program.output()
+    moving = f"from ur_ros_rtde import Robot\nwith Robot(timeout=20.0) as arm: arm.move_j({AWAY}, {SLOW})"
+    with signaled(moving, number, simulator) as program:
+        assert program.wait(20.0) == code, program.output()
     assert_stopped_early(arm, simulator)
 
 
@@ -236,15 +247,10 @@ with Robot(timeout=20.0) as arm:
         print("stopped", arm.state.joint_velocities.max() < 0.01, flush=True)
         time.sleep(30.0)
 """
-    program = Process([sys.executable, "-c", code])
-    try:
-        wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
-        program.signal(number)
+    with signaled(code, number, simulator) as program:
         wait_for(lambda: "stopped" in program.output(), 20.0, f"the end of the goal: {program.output()}")
         assert "stopped True" in program.output()
         assert_stopped_early(arm, simulator)
-    finally:
-        program.kill()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
@@ -266,15 +272,10 @@ except (KeyboardInterrupt, SystemExit, ExternalShutdownException):
 print("closed", flush=True)
 time.sleep(30.0)
 """
-    program = Process([sys.executable, "-c", code])
-    try:
-        wait_for(lambda: not simulator.is_at_rest(), 30.0, "the arm to move")
-        program.signal(number)
+    with signaled(code, number, simulator) as program:
         wait_for(lambda: "closed" in program.output(), 20.0, f"the end of the Robot: {program.output()}")
         assert simulator.is_at_rest()
         assert_stopped_early(arm, simulator)
-    finally:
-        program.kill()
 
 
 def test_a_robot_that_is_closed_leaves_the_signals_to_the_others(arm):

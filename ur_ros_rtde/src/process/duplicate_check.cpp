@@ -12,7 +12,7 @@ namespace ur_ros_rtde {
 namespace {
 /// Longest time for discovery. After that, this process is in use and must not exit.
 constexpr std::chrono::seconds start_phase{10};
-/// Begins the message of a process that runs for longer, whatever the clocks of both hosts say.
+/// Begins the message of a process that runs for longer, which the clocks of both hosts may not tell.
 constexpr std::string_view is_running = "running: ";
 constexpr const char * remedy =
     "stop one of them, or use a different namespace (--ros-args -r __ns:=/…) or ROS_DOMAIN_ID";

@@ -62,7 +62,7 @@ Motion braking_motion(const Motion & plan, const BrakingTimeScaling & scaling)
   return result;
 }
 
-// False also if the deadline has passed.
+// After the deadline: false.
 bool is_within(const Limits & limits, const Motion & motion, std::chrono::steady_clock::time_point deadline)
 {
   Utilization use;
