@@ -20,6 +20,7 @@ from ur_ros_rtde_msgs.msg import ActiveModes, ErrorCode
 MEASURES_TIME = True
 TIMEOUT = 0.5  # s; allows for delays of the publisher by other tests
 PERIOD = 20_000_000  # ns of the host's time, of messages at 50 Hz
+PERIODS_AHEAD = 1.5  # of the messages, in which the driver moves to a new target; it waits there for a later message
 CYCLE = 2_000_000 / REAL_TIME_FACTOR  # ns of the host's time
 
 
@@ -71,7 +72,7 @@ def is_regular(recorder, publish_times, first, last):
     span = recorder.published[last] - recorder.published[begin]
     around = [when for when in publish_times if recorder.published[begin] - PERIOD < when < recorder.published[last] + PERIOD]
     return (abs(span - (last - begin) * CYCLE) < 0.1 * span and len(around) > 1
-            and max(after - before for before, after in zip(around, around[1:])) < 2 * PERIOD)
+            and max(after - before for before, after in zip(around, around[1:])) < PERIODS_AHEAD * PERIOD)
 
 
 def measure_accelerations(robot, simulator):

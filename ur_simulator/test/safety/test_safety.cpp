@@ -129,7 +129,7 @@ TEST(ProtectiveStopTest, IsNotTriggeredWithoutPower)
   EXPECT_FALSE(fixture.safety.unlock_protective_stop());
 }
 
-TEST(EmergencyStopTest, StopsArmAndProgramAndCutsThePowerAtStandstill)
+TEST(EmergencyStopTest, StopsArmPausesProgramAndCutsThePowerAtStandstill)
 {
   RobotFixture fixture;
   ASSERT_TRUE(fixture.arm.speed_joint(six(2.0, 0, 0, 0, 0, 0), 10.0, 0.0));
@@ -140,8 +140,8 @@ TEST(EmergencyStopTest, StopsArmAndProgramAndCutsThePowerAtStandstill)
   EXPECT_EQ(fixture.state.robot_mode, RobotMode::running);
   const double time = fixture.until([&] { return fixture.state.robot_mode == RobotMode::power_off; }, 1.0);
   EXPECT_LT(time, 0.25);
-  EXPECT_EQ(fixture.stopped, 1);
-  EXPECT_EQ(fixture.paused, 0);
+  EXPECT_EQ(fixture.stopped, 0);
+  EXPECT_EQ(fixture.paused, 1);
 }
 
 TEST(EmergencyStopTest, LatchesUntilReleasedAndLeavesTheRobotPoweredOff)
