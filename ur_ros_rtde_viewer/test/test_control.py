@@ -6,21 +6,29 @@ import threading
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
+import rclpy
 from running_viewer import RunningViewer, until
 from support import Client
 from ur_ros_rtde_cli import interface_files
 from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms, form_panel
+from ur_ros_rtde_viewer.control import goals as goals_module
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
+from ur_ros_rtde_viewer.control.control_node import ControlNode
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
-from ur_ros_rtde_viewer.control.goals import Goals, Phase
+from ur_ros_rtde_viewer.control.goals import DRIVER_ENDED, END_TIMEOUT, LOSS_TIME, Goals, Phase
+from ur_ros_rtde_viewer.control.modes import Modes
+from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
+from ur_ros_rtde_viewer.control.target_panel import TargetPanel
 from ur_ros_rtde_viewer.control.twin import Twin
 from ur_ros_rtde_viewer.page.sliders import within_limits
 from ur_ros_rtde_viewer.state.robot_state import RobotState
 from viser import GuiFolderHandle
 
-from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, MoveJ, MoveL, MoveLRelative
+from ur_ros_rtde_msgs.action import ExecuteTrajectory, ForceMode, Freedrive, MoveJ, MoveL, MoveLRelative
+from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 BACKGROUND = True
 VIEWER_NODES = ("ur_viewer", "ur_viewer_topics")
@@ -112,10 +120,26 @@ def test_two_threads_that_change_the_action_leave_one_form(server, monkeypatch):
     assert folders == ["Goals", panel._action.value] and panel._form.name == panel._action.value
 
 
-def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled():
-    node, server, changes = MagicMock(), MagicMock(), []
-    node.post = lambda function: function()
-    goals = Goals(node, "")
+@pytest.fixture
+def control():
+    """A ControlNode without a thread."""
+    created = MagicMock()
+    created.post = lambda function: function()
+    return created
+
+
+@pytest.mark.parametrize("namespace", ["", "left", "cell/left"])
+def test_only_actions_of_the_driver_are_offered(control, namespace):
+    names = ["move_j", "dashboard/stop", "arm/move_j", "arm/dashboard/stop", "dashboard/arm/stop", "move_group/plan"]
+    prefix = f"/{namespace}/" if namespace else "/"
+    topics = [f"{action}/_action/feedback" for action in (*(prefix + name for name in names), "/other/move_j")]
+    control.node.get_topic_names_and_types.return_value = [(topic, ["p/action/A_FeedbackMessage"]) for topic in topics]
+    assert Goals(control, namespace).served() == {"move_j": "p/action/A", "dashboard/stop": "p/action/A"}
+
+
+def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled(control):
+    server, changes = MagicMock(), []
+    goals = Goals(control, "")
     goals.client = lambda name, action: server
     goal = goals.send("move_j", MoveJ, MoveJ.Goal(), lambda sent: changes.append(sent.phase))
     goals.cancel_unaccepted()
@@ -124,6 +148,192 @@ def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled():
     on_response(response)
     response.result.return_value.cancel_goal_async.assert_called_once()
     assert goal.phase == Phase.CANCELING and changes == [Phase.CANCELING]
+
+
+def test_a_tab_that_is_closed_after_the_node_changes_nothing():
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node = ControlNode(context)
+    node.start()
+    node.close()
+    node.post(lambda: pytest.fail("it was called"))
+    context.try_shutdown()
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    now = [1000.0]
+    monkeypatch.setattr(goals_module.time, "monotonic", lambda: now[0])
+    return now
+
+
+def serve(control, *identifiers):
+    control.node.get_publishers_info_by_topic.return_value = [SimpleNamespace(endpoint_gid=list(number)) for number in identifiers]
+
+
+def accepted_goal(goals, on_change):
+    """Returns a running goal, and the callback of its result."""
+    server, response = MagicMock(), MagicMock()
+    goals.client = lambda name, action: server
+    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), on_change)
+    server.send_goal_async.return_value.add_done_callback.call_args.args[0](response)
+    return goal, response.result().get_result_async().add_done_callback.call_args.args[0]
+
+
+@pytest.mark.parametrize("others", [[], [b"restarted"]])
+@pytest.mark.parametrize("canceled", [True, False])
+def test_a_goal_ends_with_its_driver(control, clock, others, canceled):
+    serve(control, b"driver")
+    goals, changes = Goals(control, ""), []
+    goal, on_result = accepted_goal(goals, lambda sent: changes.append((sent.phase, sent.message)))
+    if canceled:
+        goals.cancel(goal)
+    check = control.node.create_timer.call_args.args[1]
+    check()
+    serve(control, *others)
+    check()
+    clock[0] += 0.9 * LOSS_TIME
+    check()
+    assert not goal.has_ended
+    clock[0] += 0.2 * LOSS_TIME
+    check()
+    assert goal.ended.is_set() and changes[-1] == (Phase.FAILED, DRIVER_ENDED)
+    count = len(changes)
+    on_result(MagicMock())
+    check()
+    assert len(changes) == count and goal.phase == Phase.FAILED
+
+
+def test_a_driver_that_is_missing_for_a_moment_keeps_its_goals(control, clock):
+    goals = Goals(control, "")
+    serve(control, b"driver", b"another")
+    goal, _ = accepted_goal(goals, lambda sent: None)
+    check = control.node.create_timer.call_args.args[1]
+    for identifiers in ([], [b"driver"], [], [b"driver"]):
+        serve(control, *identifiers)
+        check()
+        clock[0] += 0.8 * LOSS_TIME
+    assert goal.phase == Phase.RUNNING
+
+
+def test_the_end_waits_for_all_goals_together(control, clock):
+    goals, waits = Goals(control, ""), []
+    for _ in range(3):
+        goal, _ = accepted_goal(goals, lambda sent: None)
+
+        def wait(timeout):
+            waits.append(timeout)
+            clock[0] += 0.6 * END_TIMEOUT
+
+        goal.ended.wait = wait
+    goals.end()
+    assert waits == pytest.approx([END_TIMEOUT, 0.4 * END_TIMEOUT, 0.0])
+
+
+@pytest.fixture
+def modes(control):
+    """The modes of a robot, of which freedrive is active, and what was sent to the robot: the name and the callback of each goal."""
+    created = Modes(control, goals := MagicMock())
+    sent = []
+    goals.send = lambda name, action, goal, on_change: sent.append((name, on_change))
+    (_, _, report, _), _ = control.node.create_subscription.call_args
+    created.note("freedrive_start", "tab")
+    report(SimpleNamespace(names=["freedrive"]))
+    return created, sent, report
+
+
+@pytest.mark.parametrize("phase, expected", [(Phase.SUCCEEDED, []), (Phase.REJECTED, ["stop"]), (Phase.FAILED, ["stop"])])
+def test_a_mode_ends_with_the_tab_that_has_started_it(modes, phase, expected):
+    created, sent, _ = modes
+    created.note("move_j", "tab")
+    created.end("other tab")
+    assert sent == []
+    created.end("tab")
+    (name, on_change), = sent
+    on_change(SimpleNamespace(phase=Phase.RUNNING))
+    on_change(SimpleNamespace(phase=phase))
+    created.end("tab")
+    assert name == "freedrive_stop" and [name for name, _ in sent[1:]] == expected
+
+
+def test_a_mode_that_outlasts_its_tab_is_not_ended(modes):
+    created, sent, _ = modes
+    created.note("freedrive_start", None)  # started again
+    created.end("tab")
+    assert sent == []
+
+
+def test_a_mode_that_has_ended_is_not_ended_again(modes):
+    created, sent, report = modes
+    report(SimpleNamespace(names=[]))
+    report(SimpleNamespace(names=["freedrive"]))  # of another client
+    created.end("tab")
+    assert sent == []
+
+
+@pytest.mark.parametrize("outlives", [False, True])
+def test_a_mode_that_starts_while_its_tab_is_closed_ends(server, outlives):
+    robot = MagicMock(action_types={"freedrive_start": "ur_ros_rtde_msgs/action/Freedrive"}, current=lambda source: None)
+    panel = FormPanel(server.gui, server.gui.add_folder("commands"), robot)
+    panel._send()
+    panel.close()
+    robot.modes.end.reset_mock()
+    panel._on_end("freedrive_start", Freedrive.Goal(outlives_client=outlives), SimpleNamespace(phase=Phase.SUCCEEDED))
+    robot.modes.note.assert_called_once_with("freedrive_start", None if outlives else panel)
+    robot.modes.end.assert_called_once_with(panel)
+
+
+@pytest.fixture
+def target(server):
+    """A TargetPanel with a target, and the functions that it has posted."""
+    posted = []
+    robot = MagicMock(joint_positions=np.zeros(6))
+    panel = TargetPanel(SimpleNamespace(gui=server.gui, scene=MagicMock()), server.gui.add_folder("target"), robot, posted.append)
+    panel._gizmo = SimpleNamespace(position=np.zeros(3), wxyz=np.array((1.0, 0.0, 0.0, 0.0)))
+    robot.view.state.tcp_pose = SimpleNamespace(position=np.zeros(3), wxyz=np.array((1.0, 0.0, 0.0, 0.0)))
+    return panel, robot.goals, posted
+
+
+def run(posted):
+    while posted:
+        posted.pop(0)()
+
+
+def test_the_plan_of_an_older_target_is_not_shown(target):
+    panel, goals, posted = target
+    panel._motion.value = panel._motion.options[1]
+    assert len(posted) == 1 and not goals.send.called  # in the thread of the page
+    run(posted)
+    old_plan = goals.send.call_args.args[3]
+    old_plan(SimpleNamespace(has_ended=True, phase=Phase.FAILED, message="out of reach"))
+    panel._solve()  # before the loop runs what was posted
+    run(posted)
+    assert panel._text.content == "Planning"
+    goals.send.call_args.args[3](SimpleNamespace(has_ended=True, phase=Phase.FAILED, message="near a singularity"))
+    run(posted)
+    assert "near a singularity" in panel._text.content
+
+
+def test_a_target_panel_that_is_closed_sends_nothing(target):
+    panel, goals, posted = target
+    panel._plan = MagicMock()
+    panel._in_loop(panel._send)
+    panel.close()
+    run(posted)
+    assert not goals.send.called
+
+
+@pytest.mark.parametrize("accepted", [True, False])
+def test_a_recording_that_starts_while_the_viewer_ends_is_stopped(server, tmp_path, accepted):
+    services = MagicMock()
+    panel = RecordingPanel(server.gui.add_folder("record"), server, services, MagicMock(), tmp_path, lambda function: function())
+    panel.toggle()
+    (kind, _, answer), _ = services.call.call_args
+    assert kind is StartRecording
+    services.call.reset_mock()
+    panel.close()
+    answer(SimpleNamespace(success=accepted, message=""), "")
+    assert [call.args[0] for call in services.call.call_args_list] == ([StopRecording] if accepted else [])
 
 
 def test_the_digital_twin_of_a_silent_robot_ends_with_its_tab():

@@ -16,6 +16,7 @@ import viser
 from rclpy.action import ActionClient
 from running_viewer import until
 from ur_ros_rtde_viewer.control import control, robot_control
+from ur_ros_rtde_viewer.page import origin
 from ur_ros_rtde_viewer.panels import plots_panel, state_panel
 from ur_ros_rtde_viewer.program import parse
 from ur_ros_rtde_viewer.ros.nodes import Nodes
@@ -76,6 +77,7 @@ def viewer(server, monkeypatch):
     for module, period in ((plots_panel, "DRAW_PERIOD"), (state_panel, "ARM_PERIOD"), (trail, "PERIOD"), (control, "EXPAND_PERIOD"),
                            (robot_control, "ACTIONS_PERIOD")):
         monkeypatch.setattr(module, period, 0.0)
+    monkeypatch.setattr(origin, "LOSS_TIMEOUT", 600.0)  # s; a page that does not read keeps its connection
     nodes = Nodes()
     created = Viewer(server, nodes, parse(["--control", "--model", "ur10e"]))
     monkeypatch.setattr(created.robots[0].topics, "poll", lambda: None)

@@ -16,7 +16,7 @@ from ur_ros_rtde_description.tree import link_poses
 from ur_ros_rtde_description.urdf import make_urdf
 from ur_ros_rtde_viewer.control.jog import STOPPED, TWO_BUTTONS
 from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT
-from ur_ros_rtde_viewer.control.target_panel import GIZMO_SCALE, TargetPanel
+from ur_ros_rtde_viewer.control.target_panel import GIZMO_SCALE, NO_PLAN, TargetPanel
 from ur_ros_rtde_viewer.control.target_pose import Motion
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS
 
@@ -400,15 +400,16 @@ def test_a_target_pose_is_previewed_and_executed(tab, viewer, simulator, motion,
     panel._motion.value = motion.value
     position = np.array(simulator.state()["actual_tcp_pose"][:3]) + (0.05, 0.0, -0.1)
     panel._gizmo.position = position
-    panel._solve()  # as at the end of a drag
+    panel._in_loop(panel._solve)  # as at the end of a drag
     tab.wait_for_text("Reachable.")
     assert np.allclose(simulator.state()["actual"]["position"], HOME, atol=1e-3)
     tab.button("Execute").click()
     until(lambda: is_at(simulator, position), "the TCP at the target")
     tab.wait_for_text(f"/{name}: succeeded")
+    until(lambda: panel._plan is None, "the end of the motion")
     panel._gizmo.position = (5.0, 0.0, 0.0)
-    panel._solve()
-    until(lambda: panel._text.content not in ("", "Planning"), "the answer of the inverse kinematics")
+    panel._in_loop(panel._solve)
+    until(lambda: panel._text.content not in ("", "Planning", NO_PLAN), "the answer of the inverse kinematics")
     assert panel._plan is None and panel._execute.disabled
     checkbox.uncheck()
 

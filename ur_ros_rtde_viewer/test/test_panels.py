@@ -1,12 +1,16 @@
-"""The panels, without ROS: texts, banners, plots."""
+"""The panels, without ROS: texts, banners, plots, replay."""
+
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banners
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
+from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, signal_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
 from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState, Signals
+from viser import UploadedFile
 
 
 def moving(stamp=0.0, position=0.0):
@@ -182,3 +186,29 @@ def test_a_paused_plot_keeps_its_curves_and_collects_on(plots, monkeypatch):
     plots._pause.value = False
     plots.update(moving(2.2, 2.2))
     assert plots._plots[0].data[1][-1] == pytest.approx(2.2) and len(plots._plots) == len(PLOTS)
+
+
+@pytest.fixture
+def replay(server):
+    created = ReplayPanel(server.gui.add_folder("replay"), server.gui, MagicMock(), lambda function: function())
+    yield created
+    created.close()
+
+
+def test_a_recording_that_fails_for_an_unknown_reason_is_reported(replay, caplog):
+    replay.replay("run.csv", lambda ended: 1 / 0)
+    replay.close()  # waits for the reader
+    assert replay.message.content == "The recording cannot be shown: ZeroDivisionError: division by zero"
+    assert "ZeroDivisionError" in caplog.text
+    replay.player.load.side_effect = ValueError("no such joint")
+    replay._show(MagicMock())
+    assert replay.message.content == "The recording cannot be shown: ValueError: no such joint"
+
+
+def test_the_content_of_an_upload_is_not_kept(replay):
+    replay._upload._impl.value = UploadedFile("run.csv", b"a,b")
+    replay._replay_upload()
+    assert replay._upload.value.content == b""
+    replay._replay_upload()  # of an upload that arrived together with the first one
+    replay.close()
+    assert "run.csv has no columns" in replay.message.content

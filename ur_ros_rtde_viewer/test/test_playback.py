@@ -72,7 +72,9 @@ def test_reads_a_plan():
     assert read_plan("plan.json", json.dumps(plan)).at(1.0) == pytest.approx([0.5] * 6)
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"samples": {"time": [0, 1], "position": [[0, 1], [2, 3]]}}'])
+@pytest.mark.parametrize("text", ["", "{}", "[1]", *('{"samples": {"time": %s, "position": %s}}' % values for values in (
+    ("[0, 1]", "[[0, 1], [2, 3]]"), ("5", "[[0, 0, 0, 0, 0, 0]]"), ("[[0], [1]]", "[[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]"),
+    ("[0, 1]", "5"), ("null", "null"), ("[0, 1" + 400 * "0" + "]", "[[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]")))])
 def test_a_file_that_is_no_plan_is_rejected(text):
     with pytest.raises(ViewerError, match="plan.json"):
         read_plan("plan.json", text)

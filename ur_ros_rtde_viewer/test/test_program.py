@@ -1,7 +1,9 @@
 """Command line and page server: valid and invalid input."""
 
 import argparse
+import base64
 import contextlib
+import os
 import socket
 import urllib.error
 import urllib.request
@@ -10,8 +12,10 @@ import msgspec
 import pytest
 import viser
 import zstandard
+from support import wait_for
 from ur_ros_rtde_viewer.arguments import RobotOptions, add_arguments, robots
 from ur_ros_rtde_viewer.errors import ViewerError
+from ur_ros_rtde_viewer.page import origin
 from ur_ros_rtde_viewer.page.origin import is_accepted
 from ur_ros_rtde_viewer.page.server import new_token, start_server, stop_server, url
 from ur_ros_rtde_viewer.program import main
@@ -122,6 +126,51 @@ def test_another_web_site_cannot_connect(server):
     with pytest.raises(InvalidStatus) as rejection:
         connect(address, origin="http://example.com", **own)
     assert rejection.value.response.status_code == 403
+
+
+OWN = {"subprotocols": [f"viser-v{viser.__version__}"], "open_timeout": 60, "max_size": None}
+
+
+def connect_without_reading(port):
+    """Returns a connection over which nothing is received once its small buffer is full."""
+    connection = socket.socket()
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    connection.connect(("127.0.0.1", port))
+    key = base64.b64encode(os.urandom(16)).decode()
+    headers = (f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {key}",
+               "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Protocol: viser-v{viser.__version__}")
+    connection.sendall("\r\n".join(("GET / HTTP/1.1", *headers, "", "")).encode())
+    assert b" 101 " in connection.recv(100)
+    return connection
+
+
+def test_a_connection_over_which_nothing_is_received_is_ended(monkeypatch):
+    monkeypatch.setattr(origin, "LOSS_TIMEOUT", 1.0)
+    server = start_server("127.0.0.1", 0)
+    connections = server._websock_server._live_connections
+    for _ in range(20):
+        server.gui.add_markdown(os.urandom(300_000).hex())  # more than the buffers of the system
+    try:
+        with contextlib.closing(connect_without_reading(server.get_port())), \
+             connect(url(server).replace("http", "ws"), origin=url(server), **OWN) as reading:
+            wait_for(lambda: len(connections) == 2, 10.0, "both connections")
+            received = 0
+            while received < 5_000_000:
+                received += len(reading.recv(timeout=60))
+            wait_for(lambda: len(connections) < 2, 10.0, "the end of the connection")
+            assert list(connections) == [1]
+    finally:
+        stop_server(server)
+
+
+def test_each_connection_has_something_to_confirm(server):
+    with connect(url(server).replace("http", "ws"), origin=url(server), **OWN):
+        connections = server._websock_server._live_connections
+        wait_for(lambda: connections, 10.0, "the connection")
+        connection, = connections.values()
+        timeout = connection.transport.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT)
+        assert (connection.ping_interval, timeout) == (origin.PING_INTERVAL, 1e3 * origin.LOSS_TIMEOUT)
+        assert connection.ping_timeout > origin.LOSS_TIMEOUT
 
 
 def test_a_page_on_the_network_needs_its_token():

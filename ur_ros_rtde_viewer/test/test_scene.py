@@ -50,6 +50,17 @@ def scene(server):
     created.remove()
 
 
+def test_robots_have_nodes_of_their_own_for_all_namespaces(server):
+    namespaces = ("left", "left/arm", "", "robot", "floor")
+    scenes = [RobotScene(server.scene, RobotOptions(namespace, "ur5e"), index) for index, namespace in enumerate(namespaces)]
+    roots = [scene.root for scene in scenes]
+    assert len(set(roots)) == len(roots) and all(root.count("/") == 1 and root != "/floor" for root in roots)
+    scenes.pop(0).remove()
+    for scene in scenes:
+        assert server.scene.get_handle_by_name(scene.arm.link_path("tool0")) is not None
+        scene.remove()
+
+
 @pytest.mark.parametrize("model", ["ur3e", "ur5e", "ur10e", "ur20"])
 def test_the_tool_is_where_forward_kinematics_puts_it(server, model):
     scene = RobotScene(server.scene, RobotOptions("", model))
@@ -66,7 +77,7 @@ def test_the_base_is_mounted_where_the_options_say(server, scene):
 
 
 def test_the_arm_appears_with_its_first_positions(server, scene):
-    root = server.scene.get_handle_by_name("/left/arm")
+    root = server.scene.get_handle_by_name(f"{scene.root}/arm")
     assert not root.visible
     scene.update(RobotState(joints=joints(POSITIONS)))
     assert root.visible and scene.arm.positions == pytest.approx(POSITIONS)
@@ -98,7 +109,7 @@ def test_the_server_keeps_only_the_newest_values(server, scene, monkeypatch):
 
 
 def test_the_ghost_shows_the_target_where_it_differs(server, scene):
-    ghost = server.scene.get_handle_by_name("/left/ghost")
+    ghost = server.scene.get_handle_by_name(f"{scene.root}/ghost")
     scene.update(RobotState(joints=joints(POSITIONS), target_joints=joints(POSITIONS)))
     assert not ghost.visible
     scene.update(RobotState(joints=joints(POSITIONS), target_joints=joints(POSITIONS + 0.2)))

@@ -10,6 +10,8 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, own_address, start_node
+from ur_ros_rtde_viewer.control.form_panel import FormPanel
+from ur_ros_rtde_viewer.control.goals import DRIVER_ENDED, Phase
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
@@ -160,6 +162,25 @@ def test_the_digital_twin_ends_if_another_program_ends_it(viewer, robot, client)
     assert shown[1] == (False, "The digital twin has ended: the driver or another program has ended it.")
 
 
+@pytest.mark.parametrize("start, mode", [("freedrive_start", "freedrive"), ("force_mode_start", "force_mode")])
+def test_a_mode_ends_with_the_tab_that_has_started_it(viewer, robot, server, client, start, mode):
+    control = viewer.control._robots[0]
+    update_until(viewer, lambda: start in control.action_types, "the actions of the driver")
+    tabs = [FormPanel(server.gui, server.gui.add_folder("commands"), control) for _ in range(2)]
+    for tab in tabs:
+        tab._action.value = start
+    if start == "force_mode_start":
+        tabs[0]._inputs["compliant",].value = "false, false, true, false, false, false"
+    tabs[0]._send()
+    update_until(viewer, lambda: robot.state.active_modes == (mode,), "the mode")
+    tabs[1].close()
+    for _ in range(30):
+        viewer.step()
+    assert robot.state.active_modes == (mode,)
+    tabs[0].close()
+    update_until(viewer, lambda: robot.state.active_modes == (), "the end of the mode")
+
+
 def test_records_and_replays(viewer, robot):
     recording, replay = panel(robot, RecordingPanel), panel(robot, ReplayPanel)
     recording.toggle()
@@ -231,12 +252,17 @@ def test_a_goal_of_a_package_that_is_not_in_this_workspace_has_no_progress(viewe
     nodes.node.create_subscription.assert_not_called()
 
 
-def test_a_restart_of_the_driver_is_shown_and_survived(viewer, robot, simulator, driver):
-    driver.stop()
+def test_a_restart_of_the_driver_after_a_crash_is_shown_and_survived(viewer, robot, simulator, driver):
+    positions = [HOME[0] - 1.0, *HOME[1:]]
+    goal = viewer.control._robots[0].goals.send("move_j", MoveJ, MoveJ.Goal(joint_positions=positions, speed=0.05), lambda _goal: None)
+    update_until(viewer, lambda: goal.phase == Phase.RUNNING, "the motion")
+    driver.kill()
     banner = panel(robot, Banner)
     update_until(viewer, lambda: banner.shown and "no messages on /joint_states for" in banner.shown[0][1], "the banner")
     restarted = start_node("driver", simulator.address)
     try:
         update_until(viewer, lambda: robot.state.age < 0.5 and not banner.shown, "the state of the restarted driver")
+        update_until(viewer, lambda: goal.has_ended, "the end of the goal")
+        assert (goal.phase, goal.message) == (Phase.FAILED, DRIVER_ENDED)
     finally:
         restarted.stop()

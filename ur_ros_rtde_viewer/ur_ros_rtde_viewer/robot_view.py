@@ -22,14 +22,16 @@ logger = logging.getLogger(__name__)
 class RobotView:
     """`tabs` is the tab group of the robot, to which panels add their tabs. `panels` are updated in their order.
 
+    `index`: of the robot in the viewer.
     `simulator`: stated address of a simulator; empty: that of the controller, if it is on this machine.
     """
 
-    def __init__(self, server: Any, nodes: Nodes, diagnostics: Diagnostics, options: RobotOptions, tabs: Any, simulator: str = ""):
+    def __init__(self, server: Any, nodes: Nodes, diagnostics: Diagnostics, options: RobotOptions, index: int, tabs: Any,
+                 simulator: str = ""):
         self.options = options
         self.topics = RobotTopics(nodes, options.namespace)
         self.services = ServiceCaller(nodes, self.topics.name_of)
-        self.scene = RobotScene(server.scene, options)
+        self.scene = RobotScene(server.scene, options, index)
         self.tabs = tabs
         self.panels: List[Panel] = []
         self._goal = ActiveGoalTopic(nodes, self.topics.name_of(""))

@@ -32,8 +32,9 @@ class Viewer:
             found = robots(options)
             self.layout = Layout(server, found)
             diagnostics = Diagnostics(nodes)
-            self.robots: List[RobotView] = [RobotView(server, nodes, diagnostics, robot, self.layout.tabs(robot), options.simulator)
-                                            for robot in found]
+            self.robots: List[RobotView] = [
+                RobotView(server, nodes, diagnostics, robot, index, self.layout.tabs(robot), options.simulator)
+                for index, robot in enumerate(found)]
             self._other_drivers = OtherDrivers(nodes, [robot.topics for robot in self.robots])
             for robot in self.robots:
                 add_panels(self, robot)
@@ -91,6 +92,8 @@ class Viewer:
 
     def close(self) -> None:
         """Ends what the page has started: recordings and the digital twin. Waits for the driver, but not long."""
+        if self.control is not None:
+            self.control.cancel_all()
         for robot in self.robots:
             robot.close()
         if self.control is not None:

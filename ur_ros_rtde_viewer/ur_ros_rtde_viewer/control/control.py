@@ -92,7 +92,8 @@ class Control:
         panels: List[Any] = []
         for robot, (commands, jog, target, twin) in zip(self._robots, self._containers):
             panels += [FormPanel(client.gui, commands, robot), JogPanel(client.gui, jog, robot, client.client_id),
-                       TargetPanel(client, target, robot), TwinPanel(client.gui, twin, robot, client.client_id, self._post)]
+                       TargetPanel(client, target, robot, self._post),
+                       TwinPanel(client.gui, twin, robot, client.client_id, self._post)]
         with self._lock:
             self._tabs[client.client_id] = panels
         if client.client_id not in self._server.get_clients():  # closed in the meantime
@@ -110,6 +111,11 @@ class Control:
             forms = [panel for panels in self._tabs.values() for panel in panels if isinstance(panel, FormPanel)]
         for form in forms:
             form.update_actions()
+
+    def cancel_all(self) -> None:
+        """Cancels the goals of all robots: none of them waits for the others to come to rest."""
+        for robot in self._robots:
+            robot.goals.cancel_all()
 
     def close(self) -> None:
         """Called after the robots were closed."""

@@ -41,9 +41,10 @@ class ControlNode:
                 logger.exception("a callback of a command failed")
 
     def post(self, function: Callable[[], Any]) -> None:
-        """Calls `function` in the thread of the node. rclpy loses a response that arrives while another thread still sends
-        the request, so every request is sent in this thread."""
-        self._executor.create_task(function)
+        """Calls `function` in the thread of the node, unless it has ended. rclpy loses a response that arrives while another thread still
+        sends the request, so every request is sent in this thread."""
+        if not self._ended.is_set():
+            self._executor.create_task(function)
 
     def close(self) -> None:
         self._ended.set()

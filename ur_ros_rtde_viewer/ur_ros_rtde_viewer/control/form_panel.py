@@ -10,6 +10,7 @@ from ur_ros_rtde_cli.fields import FieldError, Path
 from . import action_forms
 from .action_forms import Form, FormField, Kind, Source
 from .goal_view import GoalView, escaped
+from .goals import Phase, SentGoal
 from .robot_control import RobotControl
 
 NO_ACTION = "(no action server found)"
@@ -26,6 +27,7 @@ class FormPanel:
         self._folder: Any = None
         self._inputs: Dict[Path, Any] = {}
         self._goals: List[GoalView] = []
+        self._closed = False
         with container:
             self._action = gui.add_dropdown("Action", (NO_ACTION,), hint="Type a part of the name to search")
             self._send_button = gui.add_button("Send", disabled=True)
@@ -60,9 +62,12 @@ class FormPanel:
             self._show()
 
     def close(self) -> None:
+        """Ends the goals and the modes of the tab, which is gone."""
         with self._lock:
+            self._closed = True
             for goal in self._goals:
                 goal.close()
+        self._robot.modes.end(self)
 
     def _show(self) -> None:
         """Builds the form of the selected action."""
@@ -113,7 +118,7 @@ class FormPanel:
 
     def _send(self) -> None:
         form, inputs = self._form, self._inputs
-        if form is None:
+        if form is None or self._closed:
             return
         try:
             goal = form.read({path: handle.value for path, handle in inputs.items()})
@@ -125,4 +130,12 @@ class FormPanel:
             self._goals.remove(ended)
             ended.remove()
         self._goals_folder.visible = True
-        self._goals.append(GoalView(self._gui, self._goals_folder, self._robot.goals, form.name, form.action, goal))
+        self._goals.append(GoalView(self._gui, self._goals_folder, self._robot.goals, form.name, form.action, goal,
+                                    lambda sent: self._on_end(form.name, goal, sent)))
+
+    def _on_end(self, name: str, goal: Any, sent: SentGoal) -> None:
+        """Called in the thread of the node."""
+        if sent.phase == Phase.SUCCEEDED:
+            self._robot.modes.note(name, None if getattr(goal, "outlives_client", False) else self)
+            if self._closed:
+                self._robot.modes.end(self)

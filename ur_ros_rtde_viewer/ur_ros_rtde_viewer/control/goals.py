@@ -1,9 +1,10 @@
 """Sends goals of any action, and reports feedback, rejections and results."""
 
 import threading
+import time
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, FrozenSet, List, Optional
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
@@ -15,9 +16,13 @@ from ur_ros_rtde_msgs.msg import GoalRejected
 from .control_node import ControlNode
 
 DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
-END_TIMEOUT = 5.0  # s, for the results of canceled goals
+END_TIMEOUT = 5.0  # s, for the results of all canceled goals
 REASON_TIMEOUT = 2.0  # s, for the reason of a rejection
 POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
+LOSS_TIME = 2.0  # s without the server of a goal, after which its driver has ended
+CHECK_PERIOD = 0.5  # s, between two looks at the servers
+DASHBOARD = "dashboard/"  # prefix of the actions of dashboard_server
+DRIVER_ENDED = "the driver has ended: the result is unknown"
 
 
 class Phase(Enum):
@@ -45,6 +50,8 @@ class SentGoal:
     feedback: Any = None
     result: Any = None
     handle: Any = None
+    servers: FrozenSet[bytes] = frozenset()  # endpoints of the driver to which the goal was sent
+    lost_at: Optional[float] = None  # monotonic time since which this driver is missing
     ended: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -58,8 +65,10 @@ class SentGoal:
         return self.phase in ENDED
 
     def change(self, phase: Phase, message: str = "") -> None:
+        if self.has_ended:  # a result that arrives after the loss of the driver
+            return
         self.phase, self.message = phase, message or self.message
-        if self.has_ended:
+        if phase in ENDED:
             self.ended.set()
         self.on_change(self)
 
@@ -76,14 +85,19 @@ class Goals:
         self._open_lock = threading.Lock()  # goals are sent by the threads of the page
         control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        control.node.create_timer(CHECK_PERIOD, self._check_servers)
 
     def full_name(self, name: str) -> str:
         return f"/{self._namespace}/{name}" if self._namespace else f"/{name}"
 
     def served(self) -> Dict[str, str]:
-        """Returns the types of the robot's actions by their name in its namespace: {"move_j": "ur_ros_rtde_msgs/action/MoveJ"}."""
+        """Returns the types of the robot's actions by their name in its namespace: {"move_j": "ur_ros_rtde_msgs/action/MoveJ"}.
+
+        Namespaces within that of the robot belong to others, except that of dashboard_server.
+        """
         prefix = self.full_name("")
-        return {name[len(prefix):]: kind for name, kind in actions.served(self._control.node).items() if name.startswith(prefix)}
+        names = {name[len(prefix):]: kind for name, kind in actions.served(self._control.node).items() if name.startswith(prefix)}
+        return {name: kind for name, kind in names.items() if "/" not in name.removeprefix(DASHBOARD)}
 
     def client(self, name: str, action: Any) -> ActionClient:
         """Must be called in the thread of the node."""
@@ -102,12 +116,16 @@ class Goals:
     def cancel(self, sent: SentGoal) -> None:
         self._control.post(lambda: self._cancel(sent))
 
-    def end(self) -> None:
-        """Cancels all goals and waits for their results, so that the arm is at rest when the program exits."""
+    def cancel_all(self) -> None:
         for sent in self._open:
             self.cancel(sent)
+
+    def end(self) -> None:
+        """Cancels all goals and waits for their results, so that the arm is at rest when the program exits."""
+        self.cancel_all()
+        deadline = time.monotonic() + END_TIMEOUT
         for sent in self._open:
-            sent.ended.wait(END_TIMEOUT)
+            sent.ended.wait(max(0.0, deadline - time.monotonic()))
 
     def cancel_unaccepted(self) -> None:
         """Cancels the goals that wait for their server or its response: after STOP, none of them may start."""
@@ -129,13 +147,34 @@ class Goals:
             return
 
         def on_feedback(message: Any) -> None:
-            sent.feedback = message.feedback
-            sent.on_change(sent)
+            if not sent.has_ended:
+                sent.feedback = message.feedback
+                sent.on_change(sent)
 
+        sent.servers = self._servers(sent)
         client.send_goal_async(goal, feedback_callback=on_feedback).add_done_callback(
             lambda future: self._on_response(future.result(), sent))
 
+    def _servers(self, sent: SentGoal) -> FrozenSet[bytes]:
+        """Returns the endpoints that serve the action now: a driver that has been started again has others."""
+        publishers = self._control.node.get_publishers_info_by_topic(f"{sent.action}/_action/status")
+        return frozenset(bytes(info.endpoint_gid) for info in publishers)
+
+    def _check_servers(self) -> None:
+        """Ends the goals whose driver is missing for LOSS_TIME."""
+        now = time.monotonic()
+        for sent in self._open:
+            if sent.has_ended or not sent.servers or not sent.servers.isdisjoint(self._servers(sent)):
+                sent.lost_at = None
+            elif sent.lost_at is None:
+                sent.lost_at = now
+            elif now - sent.lost_at >= LOSS_TIME:
+                sent.change(Phase.FAILED, DRIVER_ENDED)
+
     def _on_response(self, handle: Any, sent: SentGoal) -> None:
+        if sent.has_ended:
+            handle.cancel_goal_async()
+            return
         if not handle.accepted:
             identifier = bytes(handle.goal_id.uuid)
             self._when(lambda: identifier in self._reasons, REASON_TIMEOUT,

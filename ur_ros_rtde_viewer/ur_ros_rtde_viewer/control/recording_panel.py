@@ -30,7 +30,7 @@ class RecordingPanel:
             self._download = gui.add_button("Download", visible=False)
         self._button.on_click(lambda _event: post(self.toggle))
         self._download.on_click(lambda event: self._send(event.client))
-        self.is_recording = False
+        self.is_recording = self._closed = False
 
     def toggle(self) -> None:
         self._button.disabled = True
@@ -46,6 +46,8 @@ class RecordingPanel:
             self._message.content = reason if response is None else response.message
             return
         self._message.content = f"Recording to `{self._file}`"
+        if self._closed:  # in the meantime
+            self.close()
 
     def _stopped(self, response: Optional[Any], reason: str) -> None:
         self._show_state(False)
@@ -82,5 +84,6 @@ class RecordingPanel:
         pass
 
     def close(self) -> None:
+        self._closed = True
         if self.is_recording:
             self._services.call(StopRecording, "stop_recording", lambda _response, _reason: None)

@@ -12,6 +12,7 @@ from .action_forms import Source
 from .control_node import ControlNode
 from .goals import Goals
 from .jog import Jog
+from .modes import Modes
 from .stop import Report, Stopper
 from .twin import Twin
 
@@ -25,6 +26,7 @@ class RobotControl:
     def __init__(self, control: ControlNode, view: Any, view_node: Any, on_actions: Callable[[], None]):
         self.view = view
         self.goals = Goals(control, view.options.namespace)
+        self.modes = Modes(control, self.goals)
         self.jog = Jog(control, self.goals)
         self.twin = Twin(view, view_node)
         self.action_types: Dict[str, str] = {}

@@ -1,7 +1,7 @@
 """A target pose that is dragged in the scene: inverse kinematics, preview of the path, and execution. For one browser tab."""
 
 import xml.etree.ElementTree as xml
-from typing import Any, List, Optional
+from typing import Any, Callable, List, Optional
 
 import numpy as np
 from ur_ros_rtde_description.models import JOINTS
@@ -11,7 +11,6 @@ from ..page.sliders import within_limits
 from ..scene.arm import Arm
 from ..scene.urdf import read_description
 from .goal_view import GoalView, escaped
-from .goals import SentGoal
 from .robot_control import RobotControl
 from .target_pose import Motion, Plan, Planner, PoseTarget
 
@@ -23,8 +22,11 @@ NO_PLAN = "*Execute* needs a motion: drag the target."
 
 
 class TargetPanel:
-    def __init__(self, client: Any, container: Any, robot: RobotControl):
-        self._client, self._robot = client, robot
+    """Callbacks of the page and of the control node are called in other threads; `post` calls a function in that of the viewer's loop,
+    where all of this happens: STOP does not wait for a preview that is drawn."""
+
+    def __init__(self, client: Any, container: Any, robot: RobotControl, post: Callable[[Callable[[], None]], None]):
+        self._client, self._robot, self._post = client, robot, post
         self._gizmo: Any = None
         self._arm: Optional[Arm] = None
         self._path: Any = None
@@ -42,14 +44,20 @@ class TargetPanel:
             self._execute = gui.add_button("Execute", color="green", disabled=True)
             self._text = gui.add_markdown(NO_TARGET)
             self._goals_folder = gui.add_folder("Goal", visible=False)
-        self._shown.on_update(lambda _event: self._show() if self._shown.value else self._hide())
-        self._motion.on_update(lambda _event: self._solve())
-        self._preview.on_update(lambda _event: self._show_preview())
-        self._execute.on_click(lambda _event: self._send())
+        self._shown.on_update(lambda _event: self._in_loop(self._show_or_hide))
+        self._motion.on_update(lambda _event: self._in_loop(self._solve))
+        self._preview.on_update(lambda _event: self._in_loop(self._show_preview))
+        self._execute.on_click(lambda _event: self._in_loop(self._send))
+
+    def _in_loop(self, function: Callable[[], None]) -> None:
+        """Calls a function in the thread of the viewer's loop, unless the tab is gone, and with it all elements."""
+        self._post(lambda: None if self._closed else function())
 
     def close(self) -> None:
-        """The tab is gone, and with it all elements."""
         self._closed = True
+        self._post(self._end)
+
+    def _end(self) -> None:
         if self._planner is not None:
             self._planner.abandon()
         if self._goal is not None:
@@ -60,6 +68,12 @@ class TargetPanel:
     def _tcp(self) -> Optional[PoseTarget]:
         pose = self._robot.view.state.tcp_pose
         return None if pose is None else PoseTarget(pose.position, pose.wxyz)
+
+    def _show_or_hide(self) -> None:
+        if self._shown.value:
+            self._show()
+        else:
+            self._hide()
 
     def _show(self) -> None:
         """Places the target at the TCP."""
@@ -74,7 +88,7 @@ class TargetPanel:
         self._arm.set_visible(False)
         self._gizmo = self._client.scene.add_transform_controls(f"{self._base}/target", scale=GIZMO_SCALE, position=tcp.position,
                                                                 wxyz=tcp.wxyz, depth_test=False)
-        self._gizmo.on_update(lambda event: self._solve() if event.phase == "end" else None)
+        self._gizmo.on_update(lambda event: self._in_loop(self._solve) if event.phase == "end" else None)
         self._say(NO_PLAN)
 
     def _hide(self) -> None:
@@ -86,8 +100,7 @@ class TargetPanel:
         self._arm = self._gizmo = None
 
     def _say(self, text: str) -> None:
-        if not self._closed:
-            self._text.content = text
+        self._text.content = text
 
     # --- Plan ------------------------------------------------------------------------------------------------------
 
@@ -110,12 +123,12 @@ class TargetPanel:
             return
         self._say("Planning")
         target = PoseTarget(np.array(self._gizmo.position), np.array(self._gizmo.wxyz))
-        self._planner = Planner(self._robot.goals, Motion(self._motion.value), joints, tcp, target,
-                                lambda plan, reason: self._on_plan(plan, reason, joints, tcp))
-        self._planner.start()
+        planner = self._planner = Planner(self._robot.goals, Motion(self._motion.value), joints, tcp, target,
+                                          lambda plan, reason: self._in_loop(lambda: self._on_plan(planner, plan, reason, joints, tcp)))
+        planner.start()
 
-    def _on_plan(self, plan: Optional[Plan], reason: str, joints: np.ndarray, tcp: PoseTarget) -> None:
-        if self._closed:
+    def _on_plan(self, planner: Planner, plan: Optional[Plan], reason: str, joints: np.ndarray, tcp: PoseTarget) -> None:
+        if planner is not self._planner:  # another target was set in the meantime
             return
         if plan is None:
             self._say(f"{escaped(reason)}")
@@ -168,9 +181,8 @@ class TargetPanel:
         self._execute.disabled = True
         self._goals_folder.visible = True
         self._goal = GoalView(self._client.gui, self._goals_folder, self._robot.goals, plan.name, plan.action,
-                              plan.goal(0.01 * within_limits(self._speed)), self._on_end)
+                              plan.goal(0.01 * within_limits(self._speed)), lambda _goal: self._in_loop(self._on_end))
 
-    def _on_end(self, _goal: SentGoal) -> None:
-        if not self._closed:
-            self._forget_plan()
-            self._say(NO_PLAN)
+    def _on_end(self) -> None:
+        self._forget_plan()
+        self._say(NO_PLAN)

@@ -1,4 +1,4 @@
-"""Rejects pages of other web sites, and on the network those who do not know the token of the page.
+"""Rejects pages of other web sites, and on the network those who do not know the token of the page. Ends lost connections.
 
 A browser lets any site connect to a server on this machine, and viser accepts all.
 
@@ -21,6 +21,10 @@ from urllib.parse import parse_qs, urlsplit
 import websockets.asyncio.server
 
 PARAMETER = "token"  # of the URL
+# A connection is lost if the other host does not confirm for LOSS_TIMEOUT that it has received anything. The time for the answer of a ping
+# is no measure: on a slow network, a ping waits behind the scene that a browser loads, and is not sent while the buffer is full.
+LOSS_TIMEOUT = 5.0  # s
+PING_INTERVAL = 2.0  # s; a ping is something to be confirmed
 COOKIE = "ur_ros_rtde_token"  # followed by the port: the browser sends a cookie to all ports of a host
 
 
@@ -87,9 +91,12 @@ def only_own_pages(token: str) -> Iterator[None]:
             response = process_request(connection, request)
             if token and response is not None:
                 response.headers["Set-Cookie"] = f"{cookie_name(host)}={token}; HttpOnly; SameSite=Strict; Path=/"
+            if response is None:
+                stream = connection.transport.get_extra_info("socket")
+                stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, round(1e3 * LOSS_TIMEOUT))
             return response
 
-        return serve(*arguments, process_request=check, **options)
+        return serve(*arguments, process_request=check, ping_interval=PING_INTERVAL, **options)
 
     websockets.asyncio.server.serve = serve_checked
     try:

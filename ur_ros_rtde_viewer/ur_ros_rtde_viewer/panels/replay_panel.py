@@ -1,13 +1,27 @@
 """Replays a recording in the scene: a CSV file from the browser, or what was recorded last."""
 
+import logging
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable
+
+from viser import UploadedFile
 
 from ..errors import ViewerError
 from ..playback.motion import Motion, read_csv
 from ..playback.player import Player
 from ..state.robot_state import RobotState
+
+logger = logging.getLogger(__name__)
+NO_FILE = UploadedFile("", b"")
+
+
+def _reason(error: Exception) -> str:
+    """Returns why a recording is not shown, and logs an error that is not expected."""
+    if isinstance(error, ViewerError):
+        return str(error)
+    logger.error("a recording cannot be shown", exc_info=error)
+    return f"The recording cannot be shown: {type(error).__name__}: {error}"
 
 
 class ReplayPanel:
@@ -23,6 +37,9 @@ class ReplayPanel:
 
     def _replay_upload(self) -> None:
         file = self._upload.value
+        if file is NO_FILE:  # two uploads arrived together
+            return
+        self._upload._impl.value = NO_FILE  # viser would keep the content
         self.replay(file.name, lambda ended: read_csv(file.name, file.content, ended))
 
     def replay(self, name: str, read: Callable[[Callable[[], bool]], Motion]) -> None:
@@ -34,8 +51,8 @@ class ReplayPanel:
     def _read(self, read: Callable[[Callable[[], bool]], Motion]) -> None:
         try:
             motion = read(self._closed.is_set)
-        except ViewerError as error:
-            text = str(error)
+        except Exception as error:
+            text = _reason(error)
             self._post(lambda: setattr(self.message, "content", text))
             return
         self._post(lambda: self._show(motion))
@@ -43,8 +60,8 @@ class ReplayPanel:
     def _show(self, motion: Motion) -> None:
         try:
             self.player.load(motion)
-        except ViewerError as error:
-            self.message.content = str(error)
+        except Exception as error:
+            self.message.content = _reason(error)
             return
         self.message.content = f"`{motion.name}`: {motion.duration:.1f} s, {len(motion.times)} rows"
 

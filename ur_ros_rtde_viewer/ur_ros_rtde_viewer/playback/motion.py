@@ -120,7 +120,9 @@ def read_plan(name: str, text: str) -> Motion:
     try:
         samples = json.loads(text)["samples"]
         times, positions = np.array(samples["time"], float), np.array(samples["position"], float)
-    except (ValueError, KeyError, TypeError):
+        if times.ndim != 1:
+            raise ValueError
+    except (ValueError, KeyError, TypeError, OverflowError):
         raise ViewerError(f"{name} is no plan: write one with `./ur plan FILE --json {name}`") from None
     if positions.ndim != 2 or positions.shape != (len(times), JOINT_COUNT):
         raise ViewerError(f"{name}: samples.position has the shape {positions.shape}: expected {len(times)} rows of {JOINT_COUNT}")

@@ -20,7 +20,7 @@ def _multiply_z(wxyz: np.ndarray, angle: float) -> tuple:
 
 
 class Arm:
-    """`root` is the scene node of the root link, for example /left/arm; its links are below it.
+    """`root` is the scene node of the root link, for example /robot_0/arm; its links are below it.
 
     The positions are those of the driver: shoulder_pan, shoulder_lift, elbow, wrist_1, wrist_2, wrist_3, in rad.
     """

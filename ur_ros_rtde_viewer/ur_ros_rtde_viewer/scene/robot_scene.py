@@ -28,12 +28,14 @@ class RobotScene:
     """Has no arm until the model is known. `arm`, `ghost` and `tcp` are None, and `urdf` is empty until then. `error` is the reason why
     the reported model cannot be shown.
 
+    `index`: of the robot in the scene. Namespaces may contain each other, so they are no names of nodes.
+
     Nodes: <root> is base_link's pose in the scene, <root>/arm and <root>/ghost the arms, <root>/base the frame of the controller.
     """
 
-    def __init__(self, scene: viser.SceneApi, options: RobotOptions):
+    def __init__(self, scene: viser.SceneApi, options: RobotOptions, index: int = 0):
         self._scene, self._options = scene, options
-        self.root = f"/{options.namespace or 'robot'}"
+        self.root = f"/robot_{index}"
         self.urdf = self.error = ""
         self.arm: Optional[Arm] = None
         self.ghost: Optional[Arm] = None
