@@ -63,6 +63,12 @@ def test_options_out_of_range_are_rejected(run_without_build):
         assert code == 2 and "cannot be negative" in output, output
 
 
+def test_an_address_that_is_a_name_is_rejected(run_without_build):
+    for options in (("--faults", "1"), ("--stops", "3"), ("--case", "7")):
+        code, output = run_without_build("chaos", *options, "--address", "localhost")
+        assert code == 1 and "--address localhost: not an IPv4 address" in output, output
+
+
 def draw(seed):
     mix = goals.Mix(random.Random(seed))
     sequence = faults.sequence(random.Random(seed))

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools.environment import FASTDDS_PROFILES, run_environment
+from ur_tools.environment import FASTDDS_PROFILES, run_environment, workspace_environment
 from ur_tools.layout import Layout
 
 BACKGROUND = True
@@ -37,6 +37,13 @@ def test_sets_a_valid_fast_dds_profile(layout, tmp_path):
     wrong = tmp_path / "wrong.xml"
     wrong.write_text(profiles.read_text().replace(HEARTBEAT[variable], "heart_period"))
     assert "XML" in output_with(variable, wrong)
+
+
+def test_nodes_on_other_hosts_are_found_only_if_the_user_asks_for_it(layout, monkeypatch):
+    monkeypatch.delenv("ROS_AUTOMATIC_DISCOVERY_RANGE", raising=False)
+    assert workspace_environment(layout)["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
+    assert workspace_environment(layout)["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
 
 
 def test_keeps_the_profile_of_the_user(layout, monkeypatch):

@@ -190,6 +190,23 @@ def test_shows_the_plan_in_the_browser_until_ctrl_c(tmp_path):
         assert running.wait(60) == 130
 
 
+def test_files_that_cannot_be_written_are_reported_before_the_build(run_without_build, tmp_path):
+    for options, status, text in ((("--json", "/missing/x.json"), 1, "/missing/x.json cannot be written: there is no folder /missing"),
+                                  (("--plot", "/missing/x.png"), 1, "/missing/x.png cannot be written: there is no folder /missing"),
+                                  (("--plot", "x.txt"), 2, "--plot x.txt: the name of a figure ends with .png, .pdf, .svg"),
+                                  (("--plot", "plan"), 2, "--plot plan: the name of a figure ends with .png, .pdf, .svg")):
+        code, output = run_without_build("plan", tmp_path / "plan.yaml", *options)
+        assert code == status and text in output, output
+
+
+def test_a_file_that_cannot_be_written_is_reported(tmp_path):
+    for name in ("plan.json", "plan.png"):
+        (tmp_path / name).mkdir()
+        result = plan(tmp_path, PATH, "--model", "ur10e", f"--{'json' if name == 'plan.json' else 'plot'}", name)
+        assert result.returncode == 1 and name in result.stdout and "Is a directory" in result.stdout, result.stdout
+        assert "Traceback" not in result.stdout
+
+
 def test_a_page_needs_the_model_of_the_arm(tmp_path):
     result = plan(tmp_path, PATH, "--view")
     assert result.returncode == 2 and "--model" in result.stdout

@@ -1,4 +1,5 @@
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -86,3 +87,54 @@ with Programs(pathlib.Path({str(tmp_path)!r})) as programs:
     os.kill(parent.pid, signal.SIGTERM)
     parent.wait(20.0)
     assert not group_is_alive(child)
+
+
+# Ends half a second after SIGINT.
+ENDS_LATE = """
+import pathlib, sys, time
+try:
+    pathlib.Path(sys.argv[1], "started").touch()
+    time.sleep(60)
+except KeyboardInterrupt:
+    pathlib.Path(sys.argv[1], "interrupted").touch()
+    time.sleep(0.5)
+    pathlib.Path(sys.argv[1], "ended").touch()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("call", ["programs.start('late', command); time.sleep(60)", "programs.run(command, {}, 60.0)"])
+def test_a_second_signal_leaves_no_program_running(tmp_path, call, number):
+    code = f"""
+import pathlib, sys, time
+sys.path[:0] = {sys.path!r}
+from ur_tools.processes import Programs
+command = {[*python(ENDS_LATE), str(tmp_path)]!r}
+with Programs(pathlib.Path({str(tmp_path)!r})) as programs:
+    {call}
+"""
+    parent = subprocess.Popen(python(code), stderr=subprocess.DEVNULL)
+    wait_for_file(tmp_path / "started")
+    parent.send_signal(number)
+    wait_for_file(tmp_path / "interrupted")
+    parent.send_signal(number)
+    parent.wait(20.0)
+    assert (tmp_path / "ended").exists()
+
+
+def test_an_ignored_hang_up_stays_ignored(tmp_path):
+    """As with nohup."""
+    previous = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Programs(tmp_path):
+            assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+        assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, previous)
+
+
+def wait_for_file(path: pathlib.Path):
+    end = time.monotonic() + 60.0
+    while not path.exists():
+        assert time.monotonic() < end, path
+        time.sleep(0.01)

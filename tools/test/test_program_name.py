@@ -2,9 +2,11 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 
+import pytest
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS
 from ur_tools import main
 from ur_tools.environment import workspace_environment
@@ -78,6 +80,44 @@ def test_an_unknown_command_is_explained():
 def test_an_unknown_program_for_the_shell_is_named():
     result = run_inside("shell", "nosuchprogram")
     assert result.returncode == 1 and "there is no program nosuchprogram" in result.stderr and "Errno" not in result.stderr
+
+
+# Half a second after the signal, it prints that it has stopped.
+STOPS_LATE = """
+import signal, sys, time
+def stop(*_):
+    time.sleep(0.5)
+    sys.exit("stopped")
+for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    signal.signal(number, stop)
+print("ready", flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.fixture
+def in_shell():
+    """Returns a function that runs a program with `./ur shell`, without a build, in a process group of its own."""
+
+    def start(*command):
+        return subprocess.Popen([sys.executable, "-c", UR.replace('sys.exit("it builds")', "None"), "shell", *command], cwd=ROOT,
+                                env={**os.environ, "PYTHONPATH": str(ROOT / "tools")}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                text=True, start_new_session=True)
+
+    return start
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_program_of_the_shell_handles_signals_itself(in_shell, number):
+    process = in_shell("python3", "-c", STOPS_LATE)
+    assert process.stdout.readline() == "ready\n"
+    os.killpg(process.pid, number)
+    assert process.communicate(timeout=60)[1] == "stopped\n" and process.returncode == 1
+
+
+def test_a_program_of_the_shell_ignores_no_signals(in_shell):
+    ignored = ["grep", "SigIgn", "/proc/self/status"]
+    assert in_shell(*ignored).communicate(timeout=60)[0] == subprocess.run(ignored, capture_output=True, text=True).stdout
 
 
 def test_the_shell_keeps_its_build(monkeypatch):

@@ -55,6 +55,12 @@ def test_every_program_in_a_command_exists():
     assert not missing
 
 
+def test_the_folder_that_the_readme_adds_to_path_has_ur():
+    package, folder = re.search(r'^export PATH="\$\(ros2 pkg prefix (\w+)\)/(\S+):\$PATH"', README, re.M).groups()
+    layout = Layout.of_environment()
+    assert program(layout, package, "ur") == layout.install / folder / "ur"
+
+
 def test_every_command_of_ur_is_known():
     """Finds `./ur …` anywhere, and `ur …` at the beginning of a line or of code. test_program_name.py runs the help of each one."""
     unknown = {f"{page.relative_to(ROOT)}: ur {command}" for page, text in PAGES.items()

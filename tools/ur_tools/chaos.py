@@ -12,6 +12,7 @@ with the tests need `./ur build --tests` first.
 """
 
 import argparse
+import ipaddress
 import pathlib
 import random
 import sys
@@ -59,16 +60,16 @@ def _is_stop_test(options: argparse.Namespace) -> bool:
 
 
 def _addresses(options: argparse.Namespace) -> List[str]:
-    """Returns one address for each lane, or the only one."""
-    if not _is_stop_test(options):
+    """Returns one address for each lane, or the only one. An invalid address is returned as it is."""
+    lanes = min(options.lanes, len(options.case) or options.lanes) if _is_stop_test(options) else 1
+    try:
+        return [options.address, *(str(ipaddress.IPv4Address(options.address) + (lane << 16)) for lane in range(1, lanes))]
+    except ValueError:
         return [options.address]
-    first, second, *rest = options.address.split(".")
-    lanes = min(options.lanes, len(options.case) or options.lanes)
-    return [".".join([first, str(int(second) + lane), *rest]) for lane in range(lanes)]
 
 
 def check(options: argparse.Namespace) -> None:
-    """Raises Failure if an address is in use."""
+    """Raises Failure if an address is invalid or in use."""
     for address in _addresses(options):
         ports.check(address)
 

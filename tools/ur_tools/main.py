@@ -9,9 +9,8 @@ import os
 import pathlib
 import shutil
 import signal
-import subprocess
 import sys
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
@@ -19,6 +18,7 @@ from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulat
 from .environment import program, run_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
+from .processes import interrupt_on_termination
 
 Command = Callable[[argparse.Namespace], int]
 
@@ -93,14 +93,21 @@ def command_shell(options: argparse.Namespace) -> int:
     if command:
         if shutil.which(command[0], path=env.get("PATH")) is None:
             raise console.Failure(f"there is no program {command[0]} in the environment of the build")
-        return subprocess.run(command, env=env).returncode
+        _execute(command, env)
     shell = env.get("SHELL", "/bin/sh")
     console.line(f"This shell has {layout.title} and this project's packages; `exit` leaves it. `ur` has the commands of "
              "./ur; `ur --help` lists them." + ("" if layout.is_installed else " The wheels do not contain the program `ros2`."))
-    if os.path.basename(shell) == "bash":
+    is_bash = os.path.basename(shell) == "bash"
+    if is_bash:
         env["PS1"] = "(ur) \\w\\$ "
-        return subprocess.run([shell, "--norc"], env=env).returncode
-    return subprocess.run([shell], env=env).returncode
+    _execute([shell, "--norc"] if is_bash else [shell], env)
+
+
+def _execute(command: List[str], env: Dict[str, str]) -> NoReturn:
+    """Replaces this process with a program of the user, which then handles signals itself."""
+    for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and the program would inherit that
+        signal.signal(number, signal.SIG_DFL)
+    os.execvpe(command[0], command, env)
 
 
 def command_module(options: argparse.Namespace) -> int:
@@ -360,14 +367,8 @@ def _message_of(error: OSError) -> str:
     return str(error)
 
 
-def _interrupt(_number: int, _frame: object) -> None:
-    raise KeyboardInterrupt
-
-
 def main(arguments: Optional[List[str]] = None) -> int:
-    # A closing terminal and `timeout` must let us end the programs that we started.
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
+    interrupt_on_termination()
     arguments = sys.argv[1:] if arguments is None else arguments
     if COMPLETION_VARIABLE in os.environ:
         _complete()

@@ -28,6 +28,8 @@ from .environment import program, run_environment
 from .layout import PROGRAM, ROOT, Layout
 from .processes import Programs
 
+FIGURES = (".png", ".pdf", ".svg")
+
 
 def parse(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"{PROGRAM} plan", description=__doc__,
@@ -35,14 +37,23 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("file", type=pathlib.Path, help="goal as YAML")
     parser.add_argument("--model", default="", metavar="MODEL",
                         help="model of the arm: ur3e, ur5e, ur10e, ... (default: the widest limits of all models)")
-    parser.add_argument("--plot", type=pathlib.Path, metavar="PNG",
-                        help="draw positions, velocities, accelerations and jerks against their limits")
+    parser.add_argument("--plot", type=pathlib.Path, metavar="FIGURE",
+                        help=f"draw positions, velocities, accelerations and jerks against their limits: {', '.join(FIGURES)}")
     parser.add_argument("--view", action="store_true", help="animate the plan in the browser until Ctrl-C; needs --model")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the plan's samples")
     options = parser.parse_args(arguments)
     if options.view and not options.model:
         parser.error("--view shows an arm: state its model with --model, for example --model ur10e")
+    if options.plot and options.plot.suffix not in FIGURES:
+        parser.error(f"--plot {options.plot}: the name of a figure ends with {', '.join(FIGURES)}")
     return options
+
+
+def check(options: argparse.Namespace) -> None:
+    """Raises Failure if a file cannot be written."""
+    for file in filter(None, (options.plot, options.json)):
+        if not file.parent.is_dir():
+            raise console.Failure(f"{file} cannot be written: there is no folder {file.parent}")
 
 
 def _run(command: List[str], text: str, env: Mapping[str, str]) -> str:
@@ -94,4 +105,4 @@ def _view(layout: Layout, options: argparse.Namespace, plan: str, env: Mapping[s
 
 
 if __name__ == "__main__":
-    sys.exit(simulation.main(parse, run))
+    sys.exit(simulation.main(parse, run, check))

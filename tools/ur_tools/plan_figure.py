@@ -48,4 +48,7 @@ def draw(plan, path):
 
 
 if __name__ == "__main__":
-    draw(json.load(sys.stdin), sys.argv[1])
+    try:
+        draw(json.load(sys.stdin), sys.argv[1])
+    except OSError as error:
+        sys.exit(f"{sys.argv[1]} cannot be written: {error.strerror}")

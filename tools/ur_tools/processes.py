@@ -10,12 +10,13 @@ Each program runs in its own session: Ctrl-C does not reach it directly, so that
 reaches its children too. Its output is written to <log_folder>/<name>.log.
 """
 
+import contextlib
 import os
 import pathlib
 import signal
 import subprocess
 import time
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .console import Failure, tail
 
@@ -23,6 +24,7 @@ from .console import Failure, tail
 GENTLY: Tuple[Tuple[int, float], ...] = ((signal.SIGINT, 5.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))
 # For a program in Python that handles SIGTERM: SIGINT leaves a traceback while the interpreter starts.
 QUIETLY = GENTLY[1:]
+TERMINATING = (signal.SIGTERM, signal.SIGHUP)
 
 
 def group_is_alive(group: int) -> bool:
@@ -93,20 +95,14 @@ class Programs:
         self._handlers: Dict[int, Any] = {}
 
     def __enter__(self) -> "Programs":
-        # A closing terminal and `kill` stop the programs like Ctrl-C.
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            self._handlers[number] = signal.signal(number, _interrupt)
+        self._handlers = interrupt_on_termination()
         return self
 
     def __exit__(self, *_unused: object) -> None:
-        # A second Ctrl-C must not prevent the remaining programs from being stopped.
-        previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
-        try:
+        with _uninterrupted():
             self.stop_all()
-        finally:
-            signal.signal(signal.SIGINT, previous)
-            for number, handler in self._handlers.items():
-                signal.signal(number, handler)
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
 
     def start(self, name: str, command: Sequence[str], env: Optional[Mapping[str, str]] = None,
               cwd: Optional[pathlib.Path] = None) -> Program:
@@ -136,7 +132,8 @@ class Programs:
                 time.sleep(0.02)
             return process.returncode
         finally:
-            end_group(process, how)
+            with _uninterrupted():
+                end_group(process, how)
 
     def check(self) -> None:
         """Raises Failure, with the end of its log, if a program has exited."""
@@ -157,6 +154,22 @@ class Programs:
     def stop_all(self) -> None:
         while self._programs:
             self._programs.pop().stop()
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Ignores signals while programs are stopped: a second one must not leave the remaining programs running."""
+    previous = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, *TERMINATING)}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def interrupt_on_termination() -> Dict[int, Any]:
+    """Lets `kill` and a closing terminal act like Ctrl-C, unless SIGHUP is ignored, as with nohup. Returns the handlers before."""
+    return {number: signal.signal(number, _interrupt) for number in TERMINATING if signal.getsignal(number) != signal.SIG_IGN}
 
 
 def _interrupt(_number: int, _frame: object) -> None:

@@ -48,6 +48,9 @@ def main(parse: Callable[[List[str]], argparse.Namespace], run: Callable[[argpar
     except console.Failure as failure:
         console.line(f"\n{failure}")
         return 1
+    except OSError as error:
+        console.line(f"\n{error.filename}: {error.strerror}" if error.filename else f"\n{error}")
+        return 1
     except KeyboardInterrupt:
         console.line("\nStopped.")
         return 130

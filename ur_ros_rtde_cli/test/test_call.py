@@ -1,5 +1,6 @@
 """`ur call`: goals, their feedback and their result."""
 
+import contextlib
 import json
 import re
 import signal
@@ -10,7 +11,7 @@ import pytest
 import yaml
 from rclpy.action import ActionServer
 from rclpy.task import Future
-from support import HOME, TIMEOUT_FACTOR, Client, Process, find_program, wait_for
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, find_program, start_node, wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, goal, output_on_terminal, slow_motion, ur, wait_until_moving
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
@@ -180,29 +181,74 @@ def test_a_reader_of_json_that_ends_cancels_the_goal(at_home):
     assert any(line.startswith('{"feedback"') for line in process.lines), process.output()
 
 
+@pytest.fixture(scope="module")
+def driver_without_robot():
+    """A driver in the namespace left. It rejects all goals."""
+    driver = start_node("driver", "127.255.255.254", FEW_PLUGINS, namespace="left")
+    yield
+    driver.stop()
+
+
+@pytest.mark.parametrize("name", ["left/move_j", "/left/move_j"])
+def test_the_name_may_contain_the_namespace_of_the_driver(driver_without_robot, name):
+    code, output = ur("call", name, "--wait", DISCOVERY)
+    assert code == 2 and output.startswith("rejected: ") and "no reason was received" not in output, output
+
+
+@pytest.mark.parametrize("name", ["left/move_j", "/left/move_j"])
+def test_the_fields_of_a_name_with_a_namespace_are_checked_without_a_server(name):
+    code, output = ur("call", name, "{speed: fast}", domain=EMPTY_DOMAIN)
+    assert code == 2 and "speed is 'fast'" in output, output
+
+
+@pytest.mark.parametrize("name, text", [("/my-robot/move_j", '"my-robot" is no namespace'), ("left/move_j", "no server of /left/move_j.")])
+def test_a_wrong_namespace_in_the_name_is_reported(name, text):
+    code, output = ur("call", name, "--wait", "0.5", domain=EMPTY_DOMAIN)
+    assert code == 2 and text in output, output
+
+
+class UnresponsiveServer:
+    """A move_j server that neither cancels nor finishes goals."""
+
+    def __init__(self):
+        self.goals = []
+        self._client = Client("unresponsive", name="unresponsive_server")
+        self._server = self._client.call_in_executor(lambda: ActionServer(self._client.node, MoveJ, "move_j", self._execute))
+
+    async def _execute(self, handle):
+        self.goals.append(handle)
+        await Future()
+
+    def call(self):
+        """Returns a running `ur call` whose goal this server has."""
+        process = Process([*slow_motion()[:2], "--namespace", "unresponsive", *slow_motion()[2:]])
+        wait_for(lambda: self.goals, 20.0, "the goal")
+        return process
+
+    def close(self):
+        self._server.destroy()
+        self._client.close()
+
+
 @pytest.fixture
 def unresponsive_server():
-    """A move_j server that neither cancels nor finishes goals. Returns the goals that it has received."""
-    client = Client("unresponsive", name="unresponsive_server")
-    goals = []
-    end = Future()
+    server = UnresponsiveServer()
+    yield server
+    server.close()
 
-    async def execute(handle):
-        goals.append(handle)
-        await end
-        handle.abort()
-        return MoveJ.Result()
 
-    server = client.call_in_executor(lambda: ActionServer(client.node, MoveJ, "move_j", execute))
-    yield goals
-    client.call_in_executor(lambda: end.set_result(True) or True)
-    server.destroy()
-    client.close()
+@pytest.mark.parametrize("restarted", [False, True])
+def test_the_end_of_the_driver_ends_the_call(restarted):
+    server = UnresponsiveServer()
+    process = server.call()
+    server.close()
+    with contextlib.closing(UnresponsiveServer()) if restarted else contextlib.nullcontext():
+        assert process.wait(20.0) == 1, process.output()
+    assert process.output().startswith("the driver has ended or is out of reach while /unresponsive/move_j was running"), process.output()
 
 
 def test_a_second_signal_exits_without_the_result(unresponsive_server):
-    process = Process([*slow_motion()[:2], "--namespace", "unresponsive", *slow_motion()[2:]])
-    wait_for(lambda: unresponsive_server, 20.0, "the goal")
+    process = unresponsive_server.call()
     process.signal(signal.SIGTERM)
     begin = time.monotonic()
     process.wait_for_output("canceling (SIGTERM)")

@@ -5,11 +5,13 @@ import os
 import re
 import subprocess
 import sys
+import time
 from types import SimpleNamespace
 
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
+from support import Client, Process, find_program, wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
 from ur_ros_rtde_cli import print_state, view
 from ur_ros_rtde_cli.errors import CliError
@@ -17,6 +19,7 @@ from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS,
 from ur_ros_rtde_cli.namespaces import other_drivers
 
 from ur_ros_rtde_msgs.msg import ActiveModes
+from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 
 def test_shows_the_version():
@@ -55,7 +58,7 @@ def test_the_state_says_that_it_is_old_and_names_active_modes(monkeypatch):
     assert next(iter(print_state.state_lines(latest))).startswith("no joint_states for 3 s: the driver has ended or has lost the robot")
 
 
-@pytest.mark.parametrize("arguments", [["state"], ["call", "move_j"], ["record", "run.csv"]])
+@pytest.mark.parametrize("arguments", [["state"], ["call", "move_j"], ["record", "run.csv"], ["doctor", "--report", "report.md"]])
 def test_an_invalid_namespace_is_rejected(arguments, capsys):
     with pytest.raises(SystemExit) as end:
         main([*arguments, "--namespace", "my-robot"])
@@ -151,6 +154,39 @@ def test_record_reports_the_number_of_rows(running, tmp_path):
     assert f"{len(rows) - 1} rows" in output and len(rows) > 100 and len(rows[0]) == 7
     code, output = ur("record", str(file), "--time", "1")
     assert code == 1 and str(file) in output, output
+
+
+@pytest.fixture
+def slow_recorder():
+    """Services in the namespace slow: start_recording responds late. Returns the names of the requests and whether they succeed."""
+    client, requests, answer = Client("slow"), [], {"success": True}
+
+    def start(_, response):
+        requests.append("start")
+        time.sleep(1.0)
+        response.success, response.message = answer["success"], "another recording runs"
+        return response
+
+    def stop(_, response):
+        requests.append("stop")
+        response.success = True
+        return response
+
+    client.node.create_service(StartRecording, "start_recording", start)
+    client.node.create_service(StopRecording, "stop_recording", stop)
+    yield requests, answer
+    client.close()
+
+
+@pytest.mark.parametrize("success, code, expected", [(True, 0, ["start", "stop"]), (False, 1, ["start"])])
+def test_a_signal_during_the_request_leaves_no_recording_running(slow_recorder, success, code, expected):
+    requests, answer = slow_recorder
+    answer["success"] = success
+    process = Process([find_program("ur_ros_rtde_cli", "ur"), "record", "run.csv", "--namespace", "slow"])
+    wait_for(lambda: requests, 20.0, "the request")
+    process.interrupt()
+    assert process.wait(20.0) == code, process.output()
+    assert requests == expected and ("another recording runs" in process.output()) == (not success)
 
 
 def test_starts_the_viewer(monkeypatch):

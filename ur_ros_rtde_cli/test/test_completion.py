@@ -31,6 +31,7 @@ def completions(tmp_path, line):
     ("ur state --wa", {"--watch", "--wait"}),
     ("ur call move_j --j", {"--json"}),
     ("ur call move_j '", {DEFAULTS}),
+    ("ur call /left/move_j '", {DEFAULTS}),
     ("ur call move_j '{j", {"{joint_positions:"}),
     ("ur call move_j '{joint_positions: [0, 0, 0, 0, 0, 0], ", {"{joint_positions: [0, 0, 0, 0, 0, 0], speed:",
                                                                 "{joint_positions: [0, 0, 0, 0, 0, 0], acceleration:"}),

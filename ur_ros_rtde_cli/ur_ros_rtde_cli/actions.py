@@ -2,12 +2,13 @@
 
 import difflib
 import importlib
-from typing import Any, Dict, Iterable, List, Optional
+from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Tuple
 
 from .errors import CliError
 from .plugins import Plugin, action_type, installed
 
 FEEDBACK_TOPIC, FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"  # behind the name and the type of an action
+STATUS_TOPIC = "/_action/status"
 
 
 def load(name: str, kind: str) -> Any:
@@ -36,6 +37,16 @@ def type_of(plugin: Plugin) -> Optional[str]:
     return None if found is None else "/action/".join(found)
 
 
+def split_name(name: str, namespace: str) -> Tuple[str, str]:
+    """Returns the namespace of the driver and the name of the action in it, for a name such as left/move_j or /left/dashboard/power_on.
+
+    An absolute name does not depend on `namespace`. The action is the name of an installed plugin; other names are not split.
+    """
+    full = name.lstrip("/") if name.startswith("/") else f"{namespace}/{name}".lstrip("/")
+    action = max((plugin for plugin in plugin_names() if f"/{full}".endswith(f"/{plugin}")), key=len, default=name.lstrip("/"))
+    return full[:-len(action)].rstrip("/"), action
+
+
 def plugin_names() -> List[str]:
     return sorted(plugin.name for plugin in installed())
 
@@ -53,3 +64,8 @@ def served(node: Any) -> Dict[str, str]:
     """
     return {topic.removesuffix(FEEDBACK_TOPIC): types[0].removesuffix(FEEDBACK_TYPE) for topic, types in node.get_topic_names_and_types()
             if topic.endswith(FEEDBACK_TOPIC) and types[0].endswith(FEEDBACK_TYPE)}
+
+
+def servers(node: Any, name: str) -> FrozenSet[bytes]:
+    """Returns the endpoints of the servers of an action with this full name. A driver that has been started again has others."""
+    return frozenset(bytes(info.endpoint_gid) for info in node.get_publishers_info_by_topic(name + STATUS_TOPIC))

@@ -7,19 +7,22 @@ Feedback is printed to stderr: one line in place on a terminal, otherwise one li
 --json, stdout has one JSON object per line: {"feedback": ...} for each message, then {"status": ..., "result": ...}, or
 {"rejected": ...}.
 
+If the driver ends or is restarted during the goal, the result is unknown and the exit code is 1.
+
 Ctrl-C, SIGTERM, SIGHUP and a closed output cancel the goal: the arm decelerates to standstill, the result is printed, and the exit
 code is 128 plus the number of the signal.
 
     ur call move_j "{joint_positions: [0, -1.57, 1.57, -1.57, -1.57, 0], speed: 0.5}"
     ur call execute_trajectory --file path.yaml
     ur call dashboard/robot_mode
+    ur call left/stop            to a driver in the namespace left, as with --namespace left
     ur call move_j --show        shows the fields of the goal
 """
 
 import argparse
 import pathlib
 
-from . import completion
+from . import actions, completion, namespaces
 from .errors import CliError
 
 
@@ -37,6 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     if options.goal is not None and options.file is not None:
         raise CliError("give the goal as an argument or with --file, not both")
+    try:
+        options.namespace, options.action = actions.split_name(options.action, options.namespace)
+        options.namespace = namespaces.valid(options.namespace)
+    except argparse.ArgumentTypeError as error:
+        raise CliError(str(error)) from None
     from .session import session  # imported here because --help does not need ROS
     with session(options.namespace) as created:
         from .send_goal import send_goal  # imported here because the node discovers the servers in the meantime

@@ -56,10 +56,11 @@ def action_names(**_: Any) -> List[str]:
 def goal(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Iterable[str]:
     """Completes the goal of the action: all fields with their defaults, or the name or the default of the last field."""
     from . import actions, fields  # imported here because they need ROS
-    kind = actions.type_of_plugin(parsed_args.action)
+    name = actions.split_name(parsed_args.action, "")[1]
+    kind = actions.type_of_plugin(name)
     if kind is None:
         return []
-    message = actions.load(parsed_args.action, kind).Goal()
+    message = actions.load(name, kind).Goal()
     if not prefix.startswith("{"):
         return [fields.to_yaml_line(message)]
     last = max(prefix.rfind("{"), prefix.rfind(", "))

@@ -17,6 +17,7 @@ import argparse
 import math
 import pathlib
 
+from . import namespaces
 from .errors import CliError
 from .robot_check.finding import State
 
@@ -32,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--robot", default="", metavar="ADDRESS", help="address of the controller (--report: default of the driver)")
     parser.add_argument("--report", type=pathlib.Path, metavar="FILE", help="write a report; needs the driver's ROS 2 environment")
     parser.add_argument("--yes", action="store_true", help="write the report without a question")
-    parser.add_argument("--namespace", default="", metavar="NS", help="namespace of the nodes of the robot, for --report (default: none)")
+    parser.add_argument("--namespace", default="", type=namespaces.valid, metavar="NS",
+                        help="namespace of the nodes of the robot, for --report (default: none)")
     parser.add_argument("--ur-type", default="", metavar="MODEL", help="model that the arm must be, for example ur5e (default: any)")
     parser.add_argument("--serial-number", default="", metavar="NUMBER", help="serial number that the robot must have (default: any)")
     parser.add_argument("--kinematics-params-file", default="", metavar="FILE",

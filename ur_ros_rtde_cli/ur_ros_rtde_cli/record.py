@@ -23,12 +23,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="rows per second (default: one for each RTDE package)")
 
 
-def _call(session: Any, kind: Any, name: str, **request: Any) -> Any:
+def _send(session: Any, kind: Any, name: str, **request: Any) -> Any:
+    """Sends a request and returns the future of its response."""
     client = session.node.create_client(kind, name)
     if not session.wait(client.service_is_ready, 5.0):
         reason = other_drivers(session.node) or ". Does robot_state_receiver run with this ROS_DOMAIN_ID?"
         raise OperationFailed(f"there is no service {name}{reason}")
-    response = session.result(client.call_async(kind.Request(**request)), RESPONSE_TIMEOUT)
+    return client.call_async(kind.Request(**request))
+
+
+def _response(session: Any, future: Any, name: str) -> Any:
+    response = session.result(future, RESPONSE_TIMEOUT)
     if response is None:
         raise OperationFailed(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
     if not response.success:
@@ -41,13 +46,14 @@ def run(options: argparse.Namespace) -> int:
 
     from .session import session
     with session(options.namespace) as created:
-        _call(created, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
-              frequency=options.frequency)
-        print("recording" + ("" if options.time is not None else ", press Ctrl-C to end"), file=sys.stderr)
+        started = _send(created, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
+                        frequency=options.frequency)
         try:
+            _response(created, started, "start_recording")
+            print("recording" + ("" if options.time is not None else ", press Ctrl-C to end"), file=sys.stderr)
             created.wait(lambda: None, options.time)
         except Interrupted:
-            pass
-        stopped = _call(created, StopRecording, "stop_recording")
+            _response(created, started, "start_recording")  # only a recording that was started is stopped: it may be that of another user
+        stopped = _response(created, _send(created, StopRecording, "stop_recording"), "stop_recording")
         print(f"{stopped.filename}: {stopped.rows} rows" + (f", {stopped.lost} lost" if stopped.lost else ""))
         return 0

@@ -1,6 +1,7 @@
 """Sends one goal and waits for its result."""
 
 import argparse
+import time
 from typing import Any, Optional, Tuple
 
 from action_msgs.msg import GoalStatus
@@ -18,6 +19,8 @@ from .namespaces import other_drivers
 from .session import GRAPH_POLL_PERIOD, Session
 
 CANCEL_TIMEOUT = 10.0  # s, to wait for the result of a canceled goal
+LOSS_TIME = 2.0  # s without the driver that has the goal, after which it counts as gone
+LOSS_CHECK_PERIOD = 0.5  # s
 
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:
@@ -32,7 +35,8 @@ def _server_not_found(session: Session, name: str, requested: str) -> CliError:
     namespaces = sorted(full[:-len(requested)].rstrip("/") or "/" for full in served if full.endswith(f"/{requested}"))
     if namespaces:
         return CliError(f"no server of {name}, but of this action in {' and '.join(namespaces)}: give --namespace")
-    hint = actions.suggestion(requested, {full.lstrip("/") for full in served} | set(actions.plugin_names()))
+    known = {full.lstrip("/") for full in served} | set(actions.plugin_names())
+    hint = "" if requested in known else actions.suggestion(requested, known)
     if not served:
         return CliError(f"no server of {name}{hint or '.'} No action server was found. Does command_server run with "
                         "this ROS_DOMAIN_ID?")
@@ -44,13 +48,12 @@ class _ActionConnection:
 
     def __init__(self, session: Session, options: argparse.Namespace):
         self._session, self._options = session, options
-        namespace = session.node.get_namespace().rstrip("/")
-        self.name = options.action if options.action.startswith("/") else f"{namespace}/{options.action}"
+        self.name = f"{session.node.get_namespace().rstrip('/')}/{options.action}"
         self._document = _read_goal(options)
 
     def connect(self) -> Tuple[Optional[ActionClient], Any]:
         """Returns the client and the goal. With --show, the client is None and a server is needed only for unknown types."""
-        expected = actions.type_of_plugin(self._options.action.lstrip("/"))
+        expected = actions.type_of_plugin(self._options.action)
         if expected is not None:
             action, goal = self._load_and_fill(expected)
             if self._options.show:
@@ -80,26 +83,58 @@ class _ActionConnection:
     def _suggest_names(self) -> None:
         requested, plugins = self._options.action, actions.plugin_names()
         hint = actions.suggestion(requested, plugins)
-        if hint and not requested.startswith("/") and requested not in plugins and self._served_type() is None:
+        if hint and requested not in plugins and self._served_type() is None:
             write(f"no plugin is named {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
 
 
+class _Driver:
+    """The driver that has the goal. It counts as gone even if another one has been started in the meantime."""
+
+    def __init__(self, session: Session, client: ActionClient, name: str):
+        self._node, self._client, self._name = session.node, client, name
+        self._servers = actions.servers(self._node, self._name)
+        self._lost_since: Optional[float] = None
+        self._next_check = 0.0
+
+    def remember(self) -> None:
+        """Uses the servers that are known now from here on."""
+        self._servers = actions.servers(self._node, self._name)
+
+    def check(self) -> None:
+        """Raises OperationFailed if the driver has been gone for LOSS_TIME."""
+        now = time.monotonic()
+        if now < self._next_check:
+            return
+        self._next_check = now + LOSS_CHECK_PERIOD
+        if self._is_served():
+            self._lost_since = None
+        elif self._lost_since is None:
+            self._lost_since = now
+        elif now - self._lost_since > LOSS_TIME:
+            raise OperationFailed(f"the driver has ended or is out of reach while {self._name} was running: its result is unknown. "
+                                  "A driver that ends stops the arm. Start it again, and look at its log")
+
+    def _is_served(self) -> bool:
+        is_same = not self._servers or not self._servers.isdisjoint(actions.servers(self._node, self._name))
+        return is_same and bool(self._client.server_is_ready())
+
+
 class _CancelOnInterruption:
-    """Cancels the goal at the first interruption and continues to wait for the result.
+    """Cancels the goal at the first interruption and continues to wait for the result. Raises OperationFailed without the driver.
 
     A second interruption, or a result that does not arrive in time, ends the program. The driver then stops the arm because
     the client has disappeared.
     """
 
-    def __init__(self, session: Session, output: Any):
-        self._session, self._output = session, output
+    def __init__(self, session: Session, driver: _Driver, output: Any):
+        self._session, self._driver, self._output = session, driver, output
         self._handle: Any = None
         self.reason: Optional[Interrupted] = None
 
     def wait(self, future: Any) -> Any:
         while True:
             try:
-                if self._session.wait(future.done, CANCEL_TIMEOUT if self.reason else None):
+                if self._session.wait(lambda: self._is_done(future), CANCEL_TIMEOUT if self.reason else None):
                     return future.result()
             except Interrupted as interrupted:
                 if self.reason:
@@ -113,8 +148,14 @@ class _CancelOnInterruption:
                 write(f"no result within {CANCEL_TIMEOUT:g} s after the goal was canceled\n")
                 raise self.reason
 
+    def _is_done(self, future: Any) -> bool:
+        if not future.done():
+            self._driver.check()
+        return bool(future.done())
+
     def accepted(self, handle: Any) -> None:
         self._handle = handle
+        self._driver.remember()
         if self.reason:
             self._cancel()
 
@@ -138,13 +179,14 @@ class _Rejections:
 
 
 def send_goal(session: Session, options: argparse.Namespace) -> int:
-    client, goal = _ActionConnection(session, options).connect()
+    connection = _ActionConnection(session, options)
+    client, goal = connection.connect()
     if client is None:
         print(fields.to_yaml(goal))
         return 0
     rejections = _Rejections(session)
     output = (JsonOutput if options.json else TextOutput)(options.quiet)
-    canceling = _CancelOnInterruption(session, output)
+    canceling = _CancelOnInterruption(session, _Driver(session, client, connection.name), output)
     handle = canceling.wait(client.send_goal_async(goal, feedback_callback=output.feedback))
     if not handle.accepted:
         reason = rejections.reason(bytes(handle.goal_id.uuid))

@@ -141,8 +141,15 @@ def test_the_program_writes_a_file(tmp_path):
     assert 'xyz="0 -0.5 0.8"' in output.read_text() and list(tmp_path.iterdir()) == [output]
 
 
+@pytest.mark.parametrize("length, status", [(255, 0), (256, 2)])
+def test_the_name_of_the_output_has_the_length_that_the_file_system_allows(length, status, tmp_path, capsys):
+    output = tmp_path / ("a" * length)
+    assert main(["--model", "ur5e", "--output", str(output)]) == status
+    assert ("File name too long" in capsys.readouterr().err) == (status == 2) == (list(tmp_path.iterdir()) == [])
+
+
 @pytest.mark.parametrize("output, mentions", [("none/arm.urdf", "No such file or directory"), (os.devnull, "not a file"),
-                                              (".", "not a file")])
+                                              (".", "not a file"), (f"{os.devnull}/arm.urdf", "Not a directory")])
 def test_an_output_that_cannot_be_written_is_rejected(output, mentions, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["--model", "ur5e", "--output", output]) == 2

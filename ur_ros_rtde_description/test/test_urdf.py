@@ -26,6 +26,12 @@ TOOL = """<robot name="gripper">
   <link name="finger"/><link name="thumb"/>
   <joint name="grip" type="prismatic"><parent link="palm"/><child link="finger"/><origin xyz="0 0 0.1"/></joint>
   <joint name="thumb_joint" type="prismatic"><parent link="palm"/><child link="thumb"/><mimic joint="grip"/></joint>
+  <transmission name="drive"><joint name="grip"/><actuator name="motor"/></transmission>
+  <ros2_control name="gripper" type="system">
+    <hardware><param name="port">grip</param></hardware>
+    <joint name="thumb_joint"><param name="mimic">grip</param></joint><sensor name="force"/><gpio name="light"/>
+  </ros2_control>
+  <gazebo reference="finger"><sensor name="camera" type="camera"/></gazebo><gazebo><plugin name="world"/></gazebo>
 </robot>"""
 
 
@@ -120,6 +126,21 @@ def test_a_tool_from_a_file_is_attached_to_tool0(tmp_path):
     assert robot.find("joint[@name='left_thumb_joint']/mimic").get("joint") == "left_grip"
     assert robot.find("link[@name='left_palm']/inertial/mass").get("value") == "0.9"
     assert root_link(robot) == "world"
+
+
+def test_the_extensions_of_a_tool_name_the_links_and_joints_with_their_prefix(tmp_path):
+    file = tmp_path / "gripper.urdf"
+    file.write_text(TOOL)
+    robot = urdf("ur5e", tf_prefix="left_", tool=str(file))
+
+    def names(path):
+        return [element.get("name") for element in robot.findall(path)]
+
+    assert names("transmission") + names("transmission/*") == ["left_drive", "left_grip", "left_motor"]
+    assert names("ros2_control") + names("ros2_control/*")[1:] == ["left_gripper", "left_thumb_joint", "left_force", "left_light"]
+    assert robot.find("ros2_control/joint/param").text == "left_grip" and robot.find("ros2_control/hardware/param").text == "grip"
+    assert [gazebo.attrib for gazebo in robot.findall("gazebo")] == [{"reference": "left_finger"}, {}]
+    assert names("gazebo/*") == ["camera", "world"]
 
 
 @pytest.mark.parametrize("model", models())

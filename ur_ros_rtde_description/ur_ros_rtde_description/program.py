@@ -7,6 +7,7 @@ Links and joints have the names and frames of ur_description. The geometry consi
 """
 
 import argparse
+import contextlib
 import os
 import pathlib
 import sys
@@ -27,14 +28,15 @@ def describe(arguments: argparse.Namespace) -> str:
 
 def write(file: pathlib.Path, text: str) -> None:
     """Writes a file as a whole or not at all."""
-    if file.exists() and not file.is_file():
-        raise DescriptionError(f"output is \"{file}\": it exists and is not a file")
-    temporary = file.with_name(f".{file.name}.{os.getpid()}")
+    temporary = file.parent / f".{os.getpid()}.urdf"
     try:
+        if file.exists() and not file.is_file():
+            raise DescriptionError(f"output is \"{file}\": it exists and is not a file")
         temporary.write_text(text)
         os.replace(temporary, file)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            temporary.unlink()
         raise DescriptionError(f"output is \"{file}\": {error.strerror}") from None
 
 

@@ -52,9 +52,14 @@ class CylinderTool:
         add_fixed_joint(robot, tf_prefix + "tool-tool_tip", tf_prefix + "tool", tf_prefix + "tool_tip", Origin((0.0, 0.0, self.length)))
 
 
+# The attributes of a tool that name its links, joints and other parts, by element. Those below <gazebo> belong to its plugins.
+NAMES = {"link": "name", "joint": "name", "parent": "link", "child": "link", "mimic": "joint", "gazebo": "reference",
+         "transmission": "name", "actuator": "name", "ros2_control": "name", "sensor": "name", "gpio": "name"}
+
+
 @dataclass(frozen=True)
 class UrdfTool:
-    """A tool from a URDF file. Its root link is attached to tool0; its links and joints receive the prefix of the arm."""
+    """A tool from a URDF file. Its root link is attached to tool0; the names of its parts receive the prefix of the arm."""
 
     robot: xml.Element
     root: str
@@ -65,12 +70,12 @@ class UrdfTool:
     def add_to(self, robot: xml.Element, tf_prefix: str) -> None:
         for element in self.robot:
             added = copy.deepcopy(element)
-            if element.tag in ("link", "joint"):
-                added.set("name", tf_prefix + element.get("name", ""))
-            for end in added.findall("parent") + added.findall("child"):
-                end.set("link", tf_prefix + end.get("link", ""))
-            for mimic in added.findall("mimic"):
-                mimic.set("joint", tf_prefix + mimic.get("joint", ""))
+            for part in [added] if added.tag == "gazebo" else added.iter():
+                attribute = NAMES.get(part.tag, "")
+                if attribute in part.attrib:
+                    part.set(attribute, tf_prefix + part.attrib[attribute])
+                elif part.tag == "param" and part.get("name") == "mimic":  # of a joint of <ros2_control>, before Jazzy
+                    part.text = tf_prefix + (part.text or "").strip()
             robot.append(added)
         add_fixed_joint(robot, f"{tf_prefix}tool0-{self.root}", tf_prefix + "tool0", tf_prefix + self.root, Origin())
 
