@@ -35,12 +35,15 @@ void check_motion(ur_ros_rtde::Check & check, const Goal & goal)
   check.above_zero("timeout", goal.timeout, 60.0, "s");
 }
 
-/// Runs the snippet, which writes the width to output register 19, and sets the width in the result.
+/// Runs the snippet, which writes the width to output register 19, and sets the width in the result. After a
+/// failure, the register may have the value of another goal.
 template <typename Run>
 ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
 {
   auto outcome = run.trigger(timeout);
-  run.result().width = run.registers().get_double(19) / millimeters_per_meter;
+  if (outcome) {
+    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
+  }
   return outcome;
 }
 

@@ -161,6 +161,12 @@ def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentio
     assert rejection.error_code == ErrorCode.INVALID_GOAL and all(part in rejection.message for part in mentions), rejection.message
 
 
+@pytest.mark.parametrize("fault", [5, 7])
+def test_a_fault_that_ends_with_the_activation_does_not_prevent_it(gripper, simulator, fault):
+    simulator.control("robotiq_gripper", fault=fault)
+    gripper.send(RobotiqActivate, "robotiq_activate", reset=True).succeeded()
+
+
 def test_a_lost_connection_ends_the_goal(gripper, simulator):
     goal = gripper.send(RobotiqGrip, "robotiq_close", speed_fraction=0.0)
     wait_for(lambda: registers(simulator)["POS"] > 20, 20.0, "the fingers to move")

@@ -41,6 +41,11 @@ void Robot::start()
   impl_->manager.claim();
 }
 
+LinkStatus Robot::link() const
+{
+  return impl_->state.link();
+}
+
 RobotStatus Robot::status() const
 {
   return impl_->manager.status();
@@ -133,6 +138,9 @@ Locked<ur_rtde::DashboardClient> Robot::dashboard() const
 Expected<std::string> Robot::query_dashboard(const std::string & line, std::chrono::milliseconds timeout,
                                              const std::stop_token & stop) const
 {
+  if (const auto controller = version(); controller && controller->is_polyscope_x()) {
+    return tl::unexpected(no_dashboard_server(*controller));
+  }
   return impl_->dashboard.request(line, timeout, stop);
 }
 

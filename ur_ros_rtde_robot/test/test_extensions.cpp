@@ -65,6 +65,17 @@ TEST_F(ExtensionsTest, AFaultInASnippetStaysAnError)
   EXPECT_TRUE(robot->has_extension("wait"));
 }
 
+TEST_F(ExtensionsTest, CodeThatIsIncompleteInThisVersionOfTheControllerIsLeftOutAlone)
+{
+  start_with({extension("half", "$5.90 if True:\n  sync()\nend"), extension("wait", "sync()")});
+  EXPECT_EQ(log.count("[error] the extension half is left out: with PolyScope"), 1U) << log.text();
+  const auto rejected = robot->has_extension("half");
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().message.find("its code is not complete"), std::string::npos)
+      << rejected.error().message;
+  EXPECT_TRUE(run_extension("wait")) << log.text();
+}
+
 TEST_F(ExtensionsTest, ATypoBesideAMissingUrcapIsToldApartFromIt)
 {
   start_with({of_urcap("open", "feeder_open(1)"), of_urcap("typo", "x = feeder_opened")});

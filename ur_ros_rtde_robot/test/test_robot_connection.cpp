@@ -59,6 +59,10 @@ TEST_F(RobotConnectionTest, ReportsThatPolyScopeXIsNotSupported)
             std::string::npos)
       << robot->status().message;
   EXPECT_TRUE(robot->latest());
+  EXPECT_TRUE(robot->link().connected);
+  const auto answer = robot->query_dashboard("robotmode", 500ms);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().message, robot->status().message);
 }
 
 TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)

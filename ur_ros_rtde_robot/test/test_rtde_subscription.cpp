@@ -45,6 +45,18 @@ TEST_F(RtdeSubscriptionTest, ReturnsFieldsOfEveryTypeInTheRequestedOrder)
   EXPECT_EQ(numbers[12], 0.0);
 }
 
+TEST_F(RtdeSubscriptionTest, TheLimitOfSilenceFollowsALowFrequency)
+{
+  controller.start();
+  using namespace std::chrono_literals;
+  const auto slow = open({"timestamp"}, 1.0);
+  ASSERT_TRUE(slow);
+  EXPECT_EQ(slow->silence_limit(500ms), 5s);
+  const auto fast = open({"timestamp"}, 125.0);
+  ASSERT_TRUE(fast);
+  EXPECT_EQ(fast->silence_limit(500ms), 500ms);
+}
+
 TEST_F(RtdeSubscriptionTest, ReturnsOnePackagePerCycle)
 {
   controller.start();

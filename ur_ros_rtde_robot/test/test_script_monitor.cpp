@@ -39,5 +39,35 @@ TEST_F(ScriptMonitorTest, EndsAtOnceIfTheScriptIsStoppedBeforeItsFirstLine)
   EXPECT_LT(monitor.report().duration, 2.5) << "not by the limit for the begin";
 }
 
+/// The end of a script whose name the controller reports like this, before its first line.
+ScriptReport report_with_name(const StateReceiver & state, const std::string & name,
+                              const std::string & reported)
+{
+  const ScriptMonitor::Markers markers{"begins", "ends"};
+  const auto program =
+      script::make_program("def " + name + "():\n  sync()\nend", {false, markers.begin, markers.end, ""});
+  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);
+  primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", reported) +
+                                                          primary::key("PROGRAM_XXX_STOPPED", reported));
+  const ScriptOptions options;
+  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), state, markers, options);
+  monitor.run(program.value());
+  return monitor.report();
+}
+
+TEST_F(ScriptMonitorTest, RecognizesTheBeginningOfALongNameAndNoOther)
+{
+  controller.start();
+  const auto state = receiver();
+  ASSERT_TRUE(connected(*state));
+  const std::string name(40, 'x');
+  EXPECT_EQ(report_with_name(*state, name, name.substr(0, 31)).error.message.find("took the script's place"),
+            std::string::npos);
+  for (const std::string & other : {name.substr(0, 30), std::string(31, 'y'), name + "x"}) {
+    const ScriptReport report = report_with_name(*state, name, other);
+    EXPECT_NE(report.error.message.find("another program"), std::string::npos) << report.error.message;
+  }
+}
+
 }  // namespace
 }  // namespace ur_ros_rtde::test

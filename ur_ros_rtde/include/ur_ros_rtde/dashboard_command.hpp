@@ -15,9 +15,8 @@
 
 namespace ur_ros_rtde {
 
-/// Success if the dashboard server is connected and has a version within `limits`.
-Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
-                       const DashboardConnection & connection);
+/// Success if the robot has a dashboard server, and it is connected and has a version within `limits`.
+Status dashboard_ready(const std::string & action, const DashboardLimits & limits, DashboardHost & host);
 
 /// Why the script of a goal ends if `goal` stops the program.
 Error stopped_through_dashboard(const std::string & goal);
@@ -96,8 +95,8 @@ class DashboardCommand<A>::GoalOfCommand final : public ur_ros_rtde::Goal {
     stops_before_ = host_.stops();
     Check check;
     command_.check(message_, check);
-    const Status ready = check.ok() ? dashboard_ready(action(), command_.limits(), host_.connection())
-                                    : tl::unexpected(*check.error());
+    const Status ready =
+        check.ok() ? dashboard_ready(action(), command_.limits(), host_) : tl::unexpected(*check.error());
     if (ready && command_.stops_program()) {
       hold_ = host_.end_script(stopped_through_dashboard(name()));
     }

@@ -92,12 +92,14 @@ Error stopped_through_dashboard(const std::string & goal)
   return {ErrorCode::program_stopped, fmt::format("the script was stopped by {}", goal)};
 }
 
-Status dashboard_ready(const std::string & action, const DashboardLimits & limits,
-                       const DashboardConnection & connection)
+Status dashboard_ready(const std::string & action, const DashboardLimits & limits, DashboardHost & host)
 {
-  const LinkStatus status = connection.link();
+  if (Status has = host.has_dashboard_server(); !has) {
+    return has;
+  }
+  const LinkStatus status = host.connection().link();
   if (status.connected) {
-    return supported(action, limits, connection);
+    return supported(action, limits, host.connection());
   }
   return failure(ErrorCode::link_lost, status.error.message.empty()
                                            ? std::string("not yet connected to the dashboard server")
@@ -142,8 +144,7 @@ Outcome DashboardRun::take_answer(const std::string & line, const Expected<std::
     if (auto why = stop_reason()) {
       return *why;
     }
-    return Outcome::failure(answer.error().code,
-                            fmt::format("{}, {:.1f} s after \"{}\"", answer.error().message, timeout, line));
+    return Outcome::failure(answer.error().code, fmt::format("\"{}\": {}", line, answer.error().message));
   }
   answer_ = *answer;
   return Outcome::success(answer_);
@@ -245,7 +246,11 @@ Outcome DashboardRun::rejection(const std::string & line)
                             answer + ": this version of PolyScope does not have it");
   }
   // Queried again: the value known from the heartbeat may be older than the command.
-  if (connection_.in_remote_control() && send("is in remote control") == "false") {
+  const auto remote =
+      connection_.in_remote_control()
+          ? connection_.request("is in remote control", answer_timeout, stop_request_->token())
+          : Expected<std::string>();
+  if (remote && *remote == "false") {
     answer += ": the robot is in local control, switch it to remote on the teach pendant";
   }
   return Outcome::failure(ErrorCode::rejected_by_robot, answer);

@@ -13,8 +13,8 @@ namespace {
 
 using Clock = RtdeSubscription::Clock;
 
-/// Without a package, the connection counts as lost.
-constexpr std::chrono::milliseconds silence_limit{500};
+/// Without a package, the connection counts as lost (RtdeSubscription::silence_limit()).
+constexpr std::chrono::milliseconds min_silence_limit{500};
 /// How soon the thread notices that it is to end.
 constexpr std::chrono::milliseconds interval{50};
 
@@ -30,9 +30,11 @@ RtdeSubscription open(const Robot & robot, const std::vector<std::string> & name
   return std::move(*subscription);
 }
 
-Error silence()
+Error silence(Clock::duration limit)
 {
-  return {ErrorCode::link_lost, fmt::format("no package with the outputs for {} ms", silence_limit.count())};
+  return {ErrorCode::link_lost,
+          fmt::format("no package with the outputs for {} ms",
+                      std::chrono::duration_cast<std::chrono::milliseconds>(limit).count())};
 }
 
 }  // namespace
@@ -40,9 +42,10 @@ Error silence()
 Outputs::Outputs(const Robot & robot, const std::vector<std::string> & names, double frequency)
     : subscription_(open(robot, names, frequency)), incoming_(subscription_.width())
 {
-  const auto got = subscription_.next(incoming_, Clock::now() + silence_limit);
+  const auto limit = subscription_.silence_limit(min_silence_limit);
+  const auto got = subscription_.next(incoming_, Clock::now() + limit);
   if (!got || !*got) {
-    throw RobotError(got ? silence() : got.error());
+    throw RobotError(got ? silence(limit) : got.error());
   }
   values_ = incoming_;
   thread_ = std::jthread([this](const std::stop_token & stop) { receive(stop); });
@@ -50,14 +53,15 @@ Outputs::Outputs(const Robot & robot, const std::vector<std::string> & names, do
 
 void Outputs::receive(const std::stop_token & stop)
 {
+  const auto limit = subscription_.silence_limit(min_silence_limit);
   for (auto last = Clock::now(); !stop.stop_requested();) {
     const auto got = subscription_.next(incoming_, Clock::now() + interval);
     const std::lock_guard lock(mutex_);
     if (got && *got) {
       last = Clock::now();
       values_.swap(incoming_);
-    } else if (!got || Clock::now() - last > silence_limit) {
-      lost_ = got ? silence() : got.error();
+    } else if (!got || Clock::now() - last > limit) {
+      lost_ = got ? silence(limit) : got.error();
       return;
     }
   }

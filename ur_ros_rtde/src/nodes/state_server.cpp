@@ -33,11 +33,8 @@ SharedStateServer::SharedStateServer(const rcl_cxx::Context::SharedPtr & context
   RobotStateReceiver::Options options = declare_state_options(*node_);
   options.address = address;
   receiver_ = std::make_unique<RobotStateReceiver>(*node_, options, [&robot] {
-    const RobotStatus status = robot.status();
     const auto version = robot.version();
-    return StateSource{{status.state != RobotState::disconnected, {status.cause, status.message}},
-                       version,
-                       version ? version->frequency() : 0.0};
+    return StateSource{robot.link(), version, version ? version->frequency() : 0.0};
   });
   robot.on_sample([this](const Sample & sample) {
     if (started_) {

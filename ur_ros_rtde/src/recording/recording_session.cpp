@@ -15,7 +15,7 @@ using Clock = RtdeSubscription::Clock;
 /// 8 s at 500 Hz, to bridge delays of the disk.
 constexpr std::size_t queue_rows = 4000;
 constexpr std::chrono::milliseconds poll_interval{50};
-constexpr std::chrono::milliseconds silence_limit{1000};
+constexpr std::chrono::milliseconds min_silence_limit{1000};
 constexpr std::chrono::milliseconds retry_interval{250};
 }  // namespace
 
@@ -72,6 +72,7 @@ void RecordingSession::receive(const std::stop_token & stop)
 Status RecordingSession::follow(const std::stop_token & stop)
 {
   std::vector<double> numbers(subscription_.width());
+  const auto silence_limit = subscription_.silence_limit(min_silence_limit);
   auto last = Clock::now();
   while (!stop.stop_requested()) {
     const auto got = subscription_.next(numbers, Clock::now() + poll_interval);

@@ -18,7 +18,9 @@ using Clock = RtdeSubscription::Clock;
 constexpr std::chrono::milliseconds fields_retry_interval{500};
 /// Interval at which the subscribers of tool_data are counted.
 constexpr std::chrono::milliseconds fields_poll_interval{100};
-constexpr std::chrono::milliseconds fields_silence_limit{1000};
+constexpr std::chrono::milliseconds min_silence_limit{1000};
+/// After a field was found missing: another controller, or an update, may have it.
+constexpr std::chrono::seconds unavailable_fields_interval{10};
 
 /// The RTDE fields of ToolData, in the order in which publish_tool() reads them.
 const std::array<std::string, 10> tool_fields{"tool_analog_input0",
@@ -72,25 +74,32 @@ FieldTopics::FieldTopics(rcl_cxx::Node & node, Options options, LogFunction log)
 
 void FieldTopics::run(const std::stop_token & stop)
 {
+  Clock::time_point without_fields_until;  // tool_data goes on without fields that this controller lacks
   while (!stop.stop_requested()) {
     const bool with_tool = tool_wanted();
-    if (!with_tool && options_.fields.empty()) {
+    const bool with_fields = !options_.fields.empty() && Clock::now() >= without_fields_until;
+    if (!with_tool && !with_fields) {
       wait(stop, fields_poll_interval);
       continue;
     }
+    const auto fields = with_fields ? options_.fields : std::vector<std::string>();
     auto subscription =
-        RtdeSubscription::open(options_.address, recipe(options_.fields, with_tool), options_.frequency);
-    Status ended = subscription ? Status() : tl::unexpected(subscription.error());
-    if (subscription) {
+        RtdeSubscription::open(options_.address, recipe(fields, with_tool), options_.frequency);
+    if (subscription && (with_fields || options_.fields.empty())) {
       logger_.reset();
-      ended = follow(*subscription, with_tool, stop);
     }
-    if (!ended) {
+    const Status ended =
+        subscription ? follow(*subscription, with_tool, stop) : tl::unexpected(subscription.error());
+    if (ended || stop.stop_requested()) {
+      continue;
+    }
+    logger_.log_on_change(LogLevel::error,
+                          fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
+    if (with_fields && ended.error().code == ErrorCode::not_supported) {
+      without_fields_until = Clock::now() + unavailable_fields_interval;
+    } else {
+      without_fields_until = {};
       wait(stop, fields_retry_interval);
-    }
-    if (!ended && !stop.stop_requested()) {
-      logger_.log_on_change(
-          LogLevel::error, fmt::format("tool_data and robot_state: {}; trying again", ended.error().message));
     }
   }
 }
@@ -100,6 +109,7 @@ Status FieldTopics::follow(RtdeSubscription & subscription, bool with_tool, cons
 {
   set_up_fields(subscription);
   std::vector<double> numbers(subscription.width());
+  const auto silence_limit = subscription.silence_limit(min_silence_limit);
   auto last = Clock::now();
   auto next_poll = last + fields_poll_interval;
   while (!stop.stop_requested()) {
@@ -113,10 +123,10 @@ Status FieldTopics::follow(RtdeSubscription & subscription, bool with_tool, cons
       if (with_tool) {
         publish_tool(numbers);
       }
-      if (robot_state_) {
+      if (!begins_.empty()) {
         publish_state(numbers);
       }
-    } else if (now - last > fields_silence_limit) {
+    } else if (now - last > silence_limit) {
       return failure(ErrorCode::link_lost, fmt::format("{} has stopped sending data", options_.address));
     }
     if (now >= next_poll) {

@@ -7,7 +7,10 @@ class Load : public DashboardCommand<ur_ros_rtde_msgs::action::DashboardText> {
   {
     // The answer to programState contains the name of the program without its directory.
     const std::string file_name = goal.text.substr(goal.text.find_last_of('/') + 1);
-    return {"load " + goal.text, "Loading program: ", {"programState", {"STOPPED " + file_name}}};
+    // The driver may start its own program at once.
+    return {"load " + goal.text,
+            "Loading program: ",
+            {"programState", {"STOPPED " + file_name, "PLAYING " + file_name}, true}};
   }
 };
 

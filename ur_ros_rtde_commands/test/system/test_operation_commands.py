@@ -7,9 +7,9 @@ import robot_fixtures
 from action_msgs.msg import GoalStatus
 from arm_state import home_plus, wait_until_moving
 from dashboard_proxy import PassesOn, robot_behind
-from support import HOME, wait_for
+from support import HOME, Client, Simulator, start_node, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, MakeReady, MoveJ, SendScript, Stop, Trigger
+from ur_ros_rtde_msgs.action import DashboardCommand, DashboardText, MakeReady, MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode
 
 RECOVERY_TIME_FACTOR = 1.0  # real durations
@@ -241,6 +241,36 @@ def test_a_script_that_dashboard_pause_has_stopped_goes_on_with_play(robot, simu
     robot.send(DashboardCommand, "dashboard/play").succeeded()
     goal.succeeded()
     assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.5, abs=0.01)
+
+
+def test_dashboard_pause_ends_a_motion_of_the_driver(robot, simulator):
+    goal = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.5), speed=0.2)
+    wait_until_moving(robot)
+    paused = robot.send(DashboardCommand, "dashboard/pause").succeeded()
+    assert "programState" in paused.message, paused.message
+    assert goal.wait_for_result()[1].error_code == ErrorCode.PROGRAM_STOPPED
+    wait_for(simulator.is_at_rest, 10.0, "standstill")
+    robot_fixtures.make_ready(robot)  # the driver has started its program again
+
+
+def test_dashboard_load_succeeds_beside_the_program_of_the_driver(robot, simulator):
+    simulator.control("store_program", name="other.urp", script="def other():\n  sync()\nend\n")
+    loaded = robot.send(DashboardText, "dashboard/load", text="other.urp").succeeded()
+    assert loaded.answer == "Loading program: other.urp"
+
+
+def test_polyscope_x_rejects_what_needs_a_dashboard_server_with_this_reason(addresses, processes):
+    simulator = processes(Simulator(addresses[1], "--polyscope", "10.12.0", "--ports", "robot_api=0", urcaps=()))
+    driver = processes(start_node("driver", simulator.address, "plugins:=[make_ready,dashboard/power_on]", "ur_type:=ur10e", namespace="x"))
+    driver.wait_for_output("PolyScope X has no dashboard server")
+    client = Client("x")
+    try:
+        for action, name in ((MakeReady, "make_ready"), (DashboardCommand, "dashboard/power_on")):
+            rejection = client.rejection(client.send(action, name))
+            assert rejection.error_code == ErrorCode.NOT_SUPPORTED, rejection.message
+            assert "PolyScope X has no dashboard server" in rejection.message, rejection.message
+    finally:
+        client.close()
 
 
 def stop_while_rtde_comes_back(client, simulator):

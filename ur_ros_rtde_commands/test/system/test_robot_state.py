@@ -131,7 +131,14 @@ def test_a_field_unsupported_by_the_controller_is_reported(addresses, processes)
     processes(Simulator(addresses[1], model="ur10"))
     receiver = processes(start_node("robot_state_receiver", addresses[1], 'robot_state_fields:=["actual_current_as_torque"]',
                                     namespace="old"))
-    receiver.wait_for_output("this controller does not have actual_current_as_torque")
+    client = Client("old")
+    try:
+        states, tool = client.subscribe(RobotState, "robot_state"), client.subscribe(ToolData, "tool_data")
+        receiver.wait_for_output("this controller does not have actual_current_as_torque")
+        wait_for_message(tool, lambda m: True, "tool_data")
+        assert not states
+    finally:
+        client.close()
 
 
 def test_robot_mode_is_no_controller_while_disconnected(addresses, processes):

@@ -41,9 +41,9 @@ Expected<RobotiqClient> RobotiqClient::connect(const std::string & address, std:
   if (!socket) {
     return failure(
         ErrorCode::not_supported,
-        fmt::format("no connection to the Robotiq gripper on port {} of {}: install Robotiq's URCap "
-                    "for grippers on the robot, and check that no firewall blocks the port",
-                    port, address));
+        fmt::format("the URCap of the Robotiq gripper cannot be reached ({}): install Robotiq's URCap for "
+                    "grippers on the robot, and check that no firewall blocks the port",
+                    socket.error().message));
   }
   return RobotiqClient(std::move(*socket));
 }

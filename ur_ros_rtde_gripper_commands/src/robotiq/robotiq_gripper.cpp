@@ -146,15 +146,19 @@ Outcome RobotiqGripper::activate(bool reset)
   return stop_unless_successful(body, "GTO 0 ACT 0");
 }
 
-/// Resets the gripper and waits until it has no fault.
+/// Resets the gripper and waits until it has no fault that prevents the activation.
 Outcome RobotiqGripper::clear()
 {
   set("GTO 0 ACT 0 ATR 0");
   RobotiqState state = read();
-  while (state.status != 0 || state.fault != 0) {
-    if (std::chrono::steady_clock::now() >= deadline_) {
+  const auto has_fault = [&state] { return state.fault != 0 && !is_pending_action(state.fault); };
+  while (state.status != 0 || has_fault()) {
+    if (const bool late = std::chrono::steady_clock::now() >= deadline_; late && has_fault()) {
       return Outcome::failure(ErrorCode::timeout, fmt::format("the gripper does not leave fault {}: {}",
                                                               state.fault, robotiq_fault_text(state.fault)));
+    } else if (late) {
+      return Outcome::failure(ErrorCode::timeout,
+                              "the gripper does not reset: check its cable and the URCap");
     }
     if (auto reason = run_.sleep_for(poll_interval)) {
       return *reason;

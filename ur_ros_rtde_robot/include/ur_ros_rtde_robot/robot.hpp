@@ -60,6 +60,8 @@ class Robot {
   void start();
 
   RobotStatus status() const;
+  /// The connection that brings the samples.
+  LinkStatus link() const;
   /// Success if the robot accepts motion commands; else cause and message of the status.
   Status ready_to_move() const;
   Status wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop = {}) const;

@@ -346,11 +346,7 @@ ControlProgramManager::Outcome ControlProgramManager::follow_program(bool robot_
 ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::optional<Error> & blocker)
 {
   if (const auto version = receiver_.version(); version && version->is_polyscope_x()) {
-    return stopped_by(
-        {ErrorCode::not_supported,
-         fmt::format("the controller has PolyScope {}: PolyScope X has no dashboard server, which this "
-                     "driver needs. Use a robot with PolyScope 5 or 3 (docs/use/polyscope_x.md)",
-                     to_string(*version))});
+    return stopped_by(no_dashboard_server(*version));
   }
   if (const auto io = interfaces_.ensure_io(); !io) {
     auto failed = interface_failed(io.error());

@@ -229,7 +229,7 @@ class Composer {
       return !extension.preamble_name.empty() && other.extension.preamble_name == extension.preamble_name;
     };
     if (!text.empty() && std::none_of(parts_.begin(), parts_.end(), same)) {
-      copy_lines(preambles_, text, fmt::format("extension `{}`, preamble", extension.name));
+      preambles_.push_back({text, fmt::format("extension `{}`, preamble", extension.name)});
     }
   }
 
@@ -237,11 +237,6 @@ class Composer {
     std::string text;
     std::string source;
   };
-
-  void copy_lines(std::vector<Lines> & where, const std::string & text, std::string source)
-  {
-    where.push_back({text, std::move(source)});
-  }
 
   void write_lines(const Lines & lines)
   {

@@ -125,6 +125,9 @@ void RobotiqGripper::step(double duration, bool powered)
     fault_ = 0;
   }
   echo_ = requests_.position;
+  if (requests_.activate != 0 && (fault_ == action_delayed_fault || fault_ == activation_required_fault)) {
+    fault_ = 0;
+  }
   if (requests_.activate == 0) {
     reset();
   } else if (fault_ == 0 && requests_.release != 0) {

@@ -43,7 +43,8 @@ class RobotiqGripper {
   /// Stuck fingers do not move, which the gripper takes for a contact.
   void set_stuck(bool stuck) { stuck_ = stuck; }
   bool is_stuck() const { return stuck_; }
-  /// A fault code of the register FLT; 0: none. From 10 on, only a reset (ACT = 0) clears it.
+  /// A fault code of the register FLT; 0: none. From 10 on, only a reset (ACT = 0) clears it; 5
+  /// and 7 end with an activation.
   void set_fault(int code) { fault_ = code; }
   double width() const;
   double object_width() const { return object_width_; }

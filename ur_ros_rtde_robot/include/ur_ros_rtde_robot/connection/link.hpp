@@ -32,4 +32,7 @@ struct ControllerVersion {
 
 std::string to_string(const ControllerVersion & version);
 
+/// What PolyScope X lacks.
+Error no_dashboard_server(const ControllerVersion & version);
+
 }  // namespace ur_ros_rtde

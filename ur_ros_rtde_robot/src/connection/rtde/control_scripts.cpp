@@ -71,31 +71,35 @@ bool ControlScripts::has_extensions() const
   return !extensions_.empty();
 }
 
-script::Result<script::ControlScript> ControlScripts::resolved(const ControllerVersion & version) const
+script::Result<script::ControlScript> ControlScripts::resolved(const script::ControlScript & script,
+                                                               const ControllerVersion & version) const
 {
-  return script::for_controller(script_, version.major, version.minor, upper_range_);
+  return script::for_controller(script, version.major, version.minor, upper_range_);
+}
+
+std::string ControlScripts::resolved_text(const script::ControlScript & script,
+                                          const ControllerVersion & version) const
+{
+  const auto resolved_script = resolved(script, version);
+  if (!resolved_script) {
+    throw std::runtime_error(
+        fmt::format("line {}: {}", resolved_script.error().line, resolved_script.error().message));
+  }
+  return resolved_script->text.text();
 }
 
 std::string ControlScripts::text(const ControllerVersion & version) const
 {
   const std::lock_guard lock(mutex_);
-  if (extensions_.empty()) {
-    return {};
-  }
-  const auto script = resolved(version);
-  return script ? script->text.text() : std::string();
+  return extensions_.empty() ? std::string() : resolved_text(script_, version);
 }
 
 std::string ControlScripts::program(const ControllerVersion & version) const
 {
   const std::lock_guard lock(mutex_);
-  const auto base = script::compose(ur_rtde::ScriptClient::getDefaultScript(), extensions_);
-  const auto script = base ? script::for_controller(*base, version.major, version.minor, upper_range_) : base;
-  if (!script) {
-    throw std::runtime_error(fmt::format("line {}: {}", script.error().line, script.error().message));
-  }
+  const auto script = script::compose(ur_rtde::ScriptClient::getDefaultScript(), extensions_);
   // What follows its node in the program of the URCap might move the arm.
-  return script->text.text() + "halt\n";
+  return resolved_text(script.value(), version) + "halt\n";
 }
 
 Expected<int> ControlScripts::id(const std::string & name) const
@@ -115,15 +119,37 @@ Expected<int> ControlScripts::id(const std::string & name) const
 std::string ControlScripts::place(const ControllerVersion & version, int line) const
 {
   const std::lock_guard lock(mutex_);
-  const auto script = resolved(version);
+  const auto script = resolved(script_, version);
   return script ? script::place(*script, line) : std::string();
+}
+
+std::vector<std::string> ControlScripts::leave_out_unfit(const ControllerVersion & version)
+{
+  const std::lock_guard lock(mutex_);
+  const std::string base = ur_rtde::ScriptClient::getDefaultScript();
+  std::vector<std::string> problems;
+  std::erase_if(extensions_, [&](const ScriptExtension & extension) {
+    const auto alone = resolved(script::compose(base, {extension}).value(), version);
+    if (alone) {
+      return false;
+    }
+    const LeftOut left_out{extension.name, fmt::format("with PolyScope {}, its code is not complete: {}",
+                                                       to_string(version), alone.error().message)};
+    problems.push_back(fmt::format("the extension {} is left out: {}", left_out.name, left_out.why));
+    left_out_[left_out.name] = left_out;
+    return true;
+  });
+  if (!problems.empty()) {
+    script_ = script::compose(base, extensions_).value();
+  }
+  return problems;
 }
 
 std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const ControllerVersion & version, int line,
                                                                  const std::string & complaint)
 {
   const std::lock_guard lock(mutex_);
-  const auto script = resolved(version);
+  const auto script = resolved(script_, version);
   const std::string where = script ? script::place(*script, line) : std::string();
   const auto culprit =
       std::find_if(extensions_.begin(), extensions_.end(), [&](const ScriptExtension & extension) {

@@ -23,7 +23,7 @@ class ControlScripts {
   bool has_extensions() const;
 
   /// The script for this controller without an enclosing `def`, with version markers and register offset
-  /// resolved. Empty if there are no extensions.
+  /// resolved. Empty if there are no extensions. Throws std::runtime_error.
   std::string text(const ControllerVersion & version) const;
   /// Like text(), but also without extensions, and at its end, the program ends to which it was added: for
   /// the External Control URCap. Throws std::runtime_error.
@@ -38,6 +38,9 @@ class ControlScripts {
     std::string why;
     std::string urcap = {};  ///< missing on the robot; empty: the extension is faulty
   };
+  /// Omits the extensions whose code is incomplete in this version of the controller, as when only one end of
+  /// a block has a version marker. Returns one message for each, with the reason.
+  std::vector<std::string> leave_out_unfit(const ControllerVersion & version);
   /// Omits the extension to which this line of text() belongs, since the controller rejects it. None if the
   /// line does not belong to an extension.
   std::optional<LeftOut> leave_out(const ControllerVersion & version, int line,
@@ -47,7 +50,9 @@ class ControlScripts {
   std::string missing_urcaps_message() const;
 
  private:
-  script::Result<script::ControlScript> resolved(const ControllerVersion & version) const;
+  script::Result<script::ControlScript> resolved(const script::ControlScript & script,
+                                                 const ControllerVersion & version) const;
+  std::string resolved_text(const script::ControlScript & script, const ControllerVersion & version) const;
 
   const bool upper_range_;
   mutable std::mutex mutex_;

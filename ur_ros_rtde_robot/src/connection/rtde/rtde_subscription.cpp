@@ -308,6 +308,13 @@ double RtdeSubscription::frequency() const
   return impl_->frequency_;
 }
 
+RtdeSubscription::Clock::duration RtdeSubscription::silence_limit(Clock::duration limit) const
+{
+  constexpr double periods = 5.0;
+  return std::max(limit,
+                  std::chrono::ceil<Clock::duration>(std::chrono::duration<double>(periods / frequency())));
+}
+
 Expected<bool> RtdeSubscription::next(std::span<double> numbers, Clock::time_point deadline)
 {
   return impl_->next(numbers, deadline);

@@ -45,6 +45,14 @@ std::string with_original_line(std::string text, int sent_line, int original_lin
   return text;
 }
 
+/// Whether the controller means the program of this name: it may report the first characters only (UR's
+/// client library keeps its names to 31 for that reason).
+bool is_program(std::string_view reported, std::string_view name)
+{
+  constexpr std::size_t reported_characters = 31;
+  return reported == name || (reported.size() >= reported_characters && name.starts_with(reported));
+}
+
 /// The controller labels errors of secondary programs, which may run beside the monitored program.
 bool is_from_secondary_program(const std::string & text)
 {
@@ -200,15 +208,15 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_started:
-      started_ = started_ || message.text == program_->name;
+      started_ = started_ || is_program(message.text, program_->name);
       // The begin of the control program may be told late.
-      if (options_.kind == ScriptKind::program && message.text != program_->name &&
+      if (options_.kind == ScriptKind::program && !is_program(message.text, program_->name) &&
           message.text != control_program) {
         replaced_by_ = message.text;
       }
       break;
     case PrimaryMessage::Kind::program_stopped:
-      if (started_ && !begin_seen_ && message.text == program_->name) {
+      if (started_ && !begin_seen_ && is_program(message.text, program_->name)) {
         ended_before_begin_ = true;
         on_compiled();
       }
