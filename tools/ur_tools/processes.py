@@ -99,10 +99,12 @@ class Programs:
         return self
 
     def __exit__(self, *_unused: object) -> None:
-        with _uninterrupted():
-            self.stop_all()
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
+        try:
+            with _uninterrupted():
+                self.stop_all()
+        finally:
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)
 
     def start(self, name: str, command: Sequence[str], env: Optional[Mapping[str, str]] = None,
               cwd: Optional[pathlib.Path] = None) -> Program:
@@ -158,13 +160,12 @@ class Programs:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Ignores signals while programs are stopped: a second one must not leave the remaining programs running."""
-    previous = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, *TERMINATING)}
+    """Signals take effect at the end: while programs are stopped, they would leave the remaining ones running."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, *TERMINATING})
     try:
         yield
     finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def interrupt_on_termination() -> Dict[int, Any]:

@@ -2,13 +2,12 @@
 
 import difflib
 import importlib
-from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Tuple
 
 from .errors import CliError
 from .plugins import Plugin, action_type, installed
 
 FEEDBACK_TOPIC, FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"  # behind the name and the type of an action
-STATUS_TOPIC = "/_action/status"
 
 
 def load(name: str, kind: str) -> Any:
@@ -64,8 +63,3 @@ def served(node: Any) -> Dict[str, str]:
     """
     return {topic.removesuffix(FEEDBACK_TOPIC): types[0].removesuffix(FEEDBACK_TYPE) for topic, types in node.get_topic_names_and_types()
             if topic.endswith(FEEDBACK_TOPIC) and types[0].endswith(FEEDBACK_TYPE)}
-
-
-def servers(node: Any, name: str) -> FrozenSet[bytes]:
-    """Returns the endpoints of the servers of an action with this full name. A driver that has been started again has others."""
-    return frozenset(bytes(info.endpoint_gid) for info in node.get_publishers_info_by_topic(name + STATUS_TOPIC))

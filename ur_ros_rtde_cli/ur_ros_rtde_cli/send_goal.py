@@ -1,7 +1,6 @@
 """Sends one goal and waits for its result."""
 
 import argparse
-import time
 from typing import Any, Optional, Tuple
 
 from action_msgs.msg import GoalStatus
@@ -11,6 +10,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_msgs.msg import GoalRejected
 
 from . import actions, fields
+from .driver_watch import DriverWatch, loss
 from .errors import CliError, OperationFailed
 from .feedback import write
 from .goal_output import JsonOutput, TextOutput
@@ -19,8 +19,6 @@ from .namespaces import other_drivers
 from .session import GRAPH_POLL_PERIOD, Session
 
 CANCEL_TIMEOUT = 10.0  # s, to wait for the result of a canceled goal
-LOSS_TIME = 2.0  # s without the driver that has the goal, after which it counts as gone
-LOSS_CHECK_PERIOD = 0.5  # s
 
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:
@@ -53,7 +51,7 @@ class _ActionConnection:
 
     def connect(self) -> Tuple[Optional[ActionClient], Any]:
         """Returns the client and the goal. With --show, the client is None and a server is needed only for unknown types."""
-        expected = actions.type_of_plugin(self._options.action)
+        expected = self._served_type() or actions.type_of_plugin(self._options.action)
         if expected is not None:
             action, goal = self._load_and_fill(expected)
             if self._options.show:
@@ -87,38 +85,6 @@ class _ActionConnection:
             write(f"no plugin is named {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
 
 
-class _Driver:
-    """The driver that has the goal. It counts as gone even if another one has been started in the meantime."""
-
-    def __init__(self, session: Session, client: ActionClient, name: str):
-        self._node, self._client, self._name = session.node, client, name
-        self._servers = actions.servers(self._node, self._name)
-        self._lost_since: Optional[float] = None
-        self._next_check = 0.0
-
-    def remember(self) -> None:
-        """Uses the servers that are known now from here on."""
-        self._servers = actions.servers(self._node, self._name)
-
-    def check(self) -> None:
-        """Raises OperationFailed if the driver has been gone for LOSS_TIME."""
-        now = time.monotonic()
-        if now < self._next_check:
-            return
-        self._next_check = now + LOSS_CHECK_PERIOD
-        if self._is_served():
-            self._lost_since = None
-        elif self._lost_since is None:
-            self._lost_since = now
-        elif now - self._lost_since > LOSS_TIME:
-            raise OperationFailed(f"the driver has ended or is out of reach while {self._name} was running: its result is unknown. "
-                                  "A driver that ends stops the arm. Start it again, and look at its log")
-
-    def _is_served(self) -> bool:
-        is_same = not self._servers or not self._servers.isdisjoint(actions.servers(self._node, self._name))
-        return is_same and bool(self._client.server_is_ready())
-
-
 class _CancelOnInterruption:
     """Cancels the goal at the first interruption and continues to wait for the result. Raises OperationFailed without the driver.
 
@@ -126,7 +92,7 @@ class _CancelOnInterruption:
     the client has disappeared.
     """
 
-    def __init__(self, session: Session, driver: _Driver, output: Any):
+    def __init__(self, session: Session, driver: DriverWatch, output: Any):
         self._session, self._driver, self._output = session, driver, output
         self._handle: Any = None
         self.reason: Optional[Interrupted] = None
@@ -143,14 +109,20 @@ class _CancelOnInterruption:
                 self._output.clear()
                 write(f"canceling ({interrupted}), interrupt again to quit without the result\n")
                 self._cancel()
+            except OperationFailed as lost:
+                self._output.clear()
+                if self.reason is None:
+                    raise
+                write(f"{lost}\n")
+                raise self.reason from None
             else:
                 assert self.reason is not None  # before an interruption, there is no limit
                 write(f"no result within {CANCEL_TIMEOUT:g} s after the goal was canceled\n")
                 raise self.reason
 
     def _is_done(self, future: Any) -> bool:
-        if not future.done():
-            self._driver.check()
+        if not future.done() and self._driver.is_gone():
+            raise OperationFailed(loss(self._driver.name))
         return bool(future.done())
 
     def accepted(self, handle: Any) -> None:
@@ -186,7 +158,7 @@ def send_goal(session: Session, options: argparse.Namespace) -> int:
         return 0
     rejections = _Rejections(session)
     output = (JsonOutput if options.json else TextOutput)(options.quiet)
-    canceling = _CancelOnInterruption(session, _Driver(session, client, connection.name), output)
+    canceling = _CancelOnInterruption(session, DriverWatch(session.node, client, connection.name), output)
     handle = canceling.wait(client.send_goal_async(goal, feedback_callback=output.feedback))
     if not handle.accepted:
         reason = rejections.reason(bytes(handle.goal_id.uuid))

@@ -9,13 +9,13 @@ from collections.abc import Callable, Generator
 from types import TracebackType
 from typing import Any
 
+from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
+
 from .connection import Connection, load, own_signals
 from .conversions import interface
 from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout
 
 CANCEL_TIMEOUT = 35.0  # s, for the result of a canceled goal, which may brake within gentle limits of its own
-LOSS_TIME = 2.0  # s without a server, after which the driver counts as gone
-CHECK_PERIOD = 0.5  # s, between two checks of whether the driver is alive
 
 Progress = Callable[[Any], object]
 
@@ -32,7 +32,7 @@ class Goal:
         self._connection, self._message, self._on_finished = connection, message, on_finished
         self._client: Any = None
         self._handle: Any = None
-        self._servers: frozenset[bytes] = frozenset()  # the endpoints of the driver that has accepted the goal
+        self._driver: DriverWatch | None = None  # to which the goal was sent
         self._answered: concurrent.futures.Future[Any] = concurrent.futures.Future()
         self._finished: concurrent.futures.Future[Any] = concurrent.futures.Future()
         self._changed = threading.Condition()
@@ -130,10 +130,10 @@ class Goal:
 
     async def _await(self) -> Any:
         try:
-            finished, lost_since = asyncio.wrap_future(self._finished), None
+            finished = asyncio.wrap_future(self._finished)
             while not self.is_finished:
                 await asyncio.wait([finished], timeout=CHECK_PERIOD)  # a canceled task does not cancel the future
-                lost_since = self._check_driver(lost_since)
+                self._check_driver()
         except BaseException:  # the task was canceled, or the driver is gone
             await asyncio.shield(self._abandon_in_thread())
             raise
@@ -168,7 +168,6 @@ class Goal:
     def _wait(self, timeout: float | None, on_progress: Progress | None) -> bool:
         """Returns whether the goal has ended within `timeout` s. Raises NoDriver."""
         end = None if timeout is None else time.monotonic() + timeout
-        lost_since: float | None = None
         while True:
             with self._changed:
                 rest = CHECK_PERIOD if end is None else min(CHECK_PERIOD, end - time.monotonic())
@@ -180,26 +179,13 @@ class Goal:
                 return True
             if end is not None and time.monotonic() >= end:
                 return False
-            lost_since = self._check_driver(lost_since)
+            self._check_driver()
 
-    def _check_driver(self, lost_since: float | None) -> float | None:
-        """Returns since when the driver is missing, or None. Raises NoDriver if that is too long."""
-        if self.is_finished or (self._connection.is_open and self._is_served()):
-            return None
-        since = time.monotonic() if lost_since is None else lost_since
-        if not self._connection.is_open or time.monotonic() - since > LOSS_TIME:
-            raise NoDriver(f"the driver has ended or is out of reach while {self.name} was running: its result is unknown. "
-                           "A driver that ends stops the arm. Start it again, and look at its log")
-        return since
-
-    def _is_served(self) -> bool:
-        """By the driver that has accepted the goal, not by one that has been started after it."""
-        is_same = not self._servers or not self._servers.isdisjoint(self._connection.publishers(self._status_topic))
-        return is_same and bool(self._client.server_is_ready())
-
-    @property
-    def _status_topic(self) -> str:
-        return f"{self.name}/_action/status"
+    def _check_driver(self) -> None:
+        """Raises NoDriver if the driver has been missing for a while, or the connection is closed."""
+        is_lost = not self._connection.is_open or (self._driver is not None and self._driver.is_gone())
+        if is_lost and not self.is_finished:
+            raise NoDriver(loss(self.name))
 
     def request_cancel(self) -> None:
         """Cancels the goal without waiting for its end."""
@@ -221,12 +207,15 @@ class Goal:
         if self._cancel_requested:
             self._finish(None)
             return
+        self._driver = DriverWatch(self._connection.node, self._client, self._connection.full_name(self.name))
         self._client.send_goal_async(self._message, feedback_callback=self._on_feedback).add_done_callback(self._on_answer)
 
     def _on_answer(self, future: Any) -> None:
         handle = future.result()
         if handle.accepted:
-            self._handle, self._servers = handle, self._connection.publishers(self._status_topic)
+            self._handle = handle
+            if self._driver is not None:
+                self._driver.remember()
             handle.get_result_async().add_done_callback(self._on_result)
             if self._cancel_requested:
                 handle.cancel_goal_async()
@@ -275,7 +264,6 @@ def wait_for_all(*goals: Goal, timeout: float | None = None) -> list[Any]:
 def _wait_for_success(goals: tuple[Goal, ...], timeout: float | None) -> None:
     """Returns when all goals have succeeded. Raises what ends the wait before."""
     end = None if timeout is None else time.monotonic() + timeout
-    lost_since: dict[Goal, float | None] = {}
     while running := [goal for goal in goals if not goal.is_finished]:
         rest = CHECK_PERIOD if end is None else min(CHECK_PERIOD, end - time.monotonic())
         if rest <= 0.0:
@@ -286,4 +274,4 @@ def _wait_for_success(goals: tuple[Goal, ...], timeout: float | None) -> None:
             if goal.is_finished:
                 goal._outcome()
             else:
-                lost_since[goal] = goal._check_driver(lost_since.get(goal))
+                goal._check_driver()

@@ -74,7 +74,12 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
           log),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
-              [this](const ControllerVersion & version) { return control_scripts.program(version); }},
+              [this, log](const ControllerVersion & version) {
+                for (const std::string & problem : control_scripts.leave_out_unfit(version)) {
+                  log(LogLevel::error, problem);
+                }
+                return control_scripts.program(version);
+              }},
              log),
       manager(options, state, dashboard, model, interfaces, server, log),
       scripts(options, state, tracker, activities, stopper, manager, [this] { return generation(); }),

@@ -104,6 +104,23 @@ TEST_F(ExternalControlTest, BecomesReadyWhenTheProgramIsPlayed)
   EXPECT_TRUE(works());
 }
 
+TEST_F(ExternalControlTest, LeavesCodeOutThatIsIncompleteInThisVersionOfTheController)
+{
+  controller.start();
+  controller.control({{"command", "store_external_control"}, {"host", own_address()}, {"port", port}});
+  robot = std::make_unique<Robot>(options(), log.function());
+  ScriptExtension half;
+  half.name = "half";
+  half.snippet = "$5.90 if True:\n  sync()\nend";
+  ASSERT_TRUE(robot->set_extensions({half}).empty());
+  robot->start();
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready()) << log.text();
+  EXPECT_EQ(log.count("[error] the extension half is left out"), 1U) << log.text();
+  EXPECT_FALSE(robot->has_extension("half"));
+}
+
 TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
 {
   start(options());

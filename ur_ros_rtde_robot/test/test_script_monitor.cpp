@@ -61,11 +61,11 @@ TEST_F(ScriptMonitorTest, RecognizesTheBeginningOfALongNameAndNoOther)
   const auto state = receiver();
   ASSERT_TRUE(connected(*state));
   const std::string name(40, 'x');
-  EXPECT_EQ(report_with_name(*state, name, name.substr(0, 31)).error.message.find("took the script's place"),
-            std::string::npos);
+  EXPECT_EQ(report_with_name(*state, name, name.substr(0, 31)).end, ScriptEnd::stopped);
   for (const std::string & other : {name.substr(0, 30), std::string(31, 'y'), name + "x"}) {
     const ScriptReport report = report_with_name(*state, name, other);
-    EXPECT_NE(report.error.message.find("another program"), std::string::npos) << report.error.message;
+    EXPECT_NE(report.error.message.find("another program, `" + other + "`"), std::string::npos)
+        << report.error.message;
   }
 }
 

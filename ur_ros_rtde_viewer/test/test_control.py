@@ -12,13 +12,14 @@ import rclpy
 from running_viewer import RunningViewer, until
 from support import Client
 from ur_ros_rtde_cli import interface_files
+from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms, form_panel
 from ur_ros_rtde_viewer.control import goals as goals_module
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
 from ur_ros_rtde_viewer.control.control_node import ControlNode
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
-from ur_ros_rtde_viewer.control.goals import DRIVER_ENDED, END_TIMEOUT, LOSS_TIME, Goals, Phase
+from ur_ros_rtde_viewer.control.goals import END_TIMEOUT, Goals, Phase
 from ur_ros_rtde_viewer.control.modes import Modes
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.control.target_panel import TargetPanel
@@ -191,13 +192,14 @@ def test_a_goal_ends_with_its_driver(control, clock, others, canceled):
     check = control.node.create_timer.call_args.args[1]
     check()
     serve(control, *others)
+    clock[0] += CHECK_PERIOD
     check()
     clock[0] += 0.9 * LOSS_TIME
     check()
     assert not goal.has_ended
     clock[0] += 0.2 * LOSS_TIME
     check()
-    assert goal.ended.is_set() and changes[-1] == (Phase.FAILED, DRIVER_ENDED)
+    assert goal.ended.is_set() and changes[-1] == (Phase.FAILED, loss(goal.action))
     count = len(changes)
     on_result(MagicMock())
     check()

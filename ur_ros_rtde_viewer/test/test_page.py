@@ -177,11 +177,14 @@ def test_a_goal_with_nested_arrays(tab, simulator):
 def stop_delay(tab, presses, robot, simulator, file, target):
     """Presses STOP during a motion. Returns the time in s of the controller from then to the first lower target speed."""
     assert robot.call(StartRecording, "start_recording", filename=str(file), fields=["timestamp", "target_qd"]).success
-    goal = robot.send(MoveJ, "move_j", joint_positions=target, speed=0.3, acceleration=10.0)
-    until(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.29, "the arm to move at its speed")
-    tab.button("STOP").click()
-    goal.wait_for_result()
-    assert robot.call(StopRecording, "stop_recording").success
+    try:
+        goal = robot.send(MoveJ, "move_j", joint_positions=target, speed=0.3, acceleration=10.0)
+        until(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 0.29, "the arm to move at its speed")
+        tab.button("STOP").click()
+        goal.wait_for_result()
+    finally:
+        stopped = robot.call(StopRecording, "stop_recording").success
+    assert stopped
     with file.open(newline="") as text:
         rows = [(float(row["timestamp"]), abs(float(row["target_qd_0"]))) for row in csv.DictReader(text)]
     assert rows[-1][1] == 0.0

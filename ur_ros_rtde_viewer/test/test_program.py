@@ -145,20 +145,20 @@ def connect_without_reading(port):
 
 
 def test_a_connection_over_which_nothing_is_received_is_ended(monkeypatch):
-    monkeypatch.setattr(origin, "LOSS_TIMEOUT", 1.0)
+    monkeypatch.setattr(origin, "LOSS_TIMEOUT", 3.0)
     server = start_server("127.0.0.1", 0)
     connections = server._websock_server._live_connections
     for _ in range(20):
         server.gui.add_markdown(os.urandom(300_000).hex())  # more than the buffers of the system
     try:
-        with contextlib.closing(connect_without_reading(server.get_port())), \
-             connect(url(server).replace("http", "ws"), origin=url(server), **OWN) as reading:
+        with connect(url(server).replace("http", "ws"), origin=url(server), **OWN) as reading, \
+             contextlib.closing(connect_without_reading(server.get_port())):
             wait_for(lambda: len(connections) == 2, 10.0, "both connections")
             received = 0
             while received < 5_000_000:
                 received += len(reading.recv(timeout=60))
-            wait_for(lambda: len(connections) < 2, 10.0, "the end of the connection")
-            assert list(connections) == [1]
+            wait_for(lambda: len(connections) < 2, 30.0, "the end of the connection")
+            assert list(connections) == [0]
     finally:
         stop_server(server)
 

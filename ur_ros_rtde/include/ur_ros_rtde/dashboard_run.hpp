@@ -114,7 +114,7 @@ class DashboardRun {
   std::optional<Error> overtaken();
   /// Ends the program that may have been started. Returns `why`, and whether it may still begin.
   Outcome end_program(Error why);
-  Outcome take_answer(const std::string & line, const Expected<std::string> & answer, double timeout);
+  Outcome take_answer(const std::string & line, const Expected<std::string> & answer);
   Outcome rejection(const std::string & line);
   Outcome until(const ExpectedState & expected, Clock::time_point deadline, double timeout,
                 bool starts_program = false);

@@ -134,11 +134,10 @@ Outcome DashboardRun::query(const std::string & question)
 
 Outcome DashboardRun::raw(const std::string & line, double timeout)
 {
-  return take_answer(line, connection_.request(line, to_duration(timeout), stop_request_->token()), timeout);
+  return take_answer(line, connection_.request(line, to_duration(timeout), stop_request_->token()));
 }
 
-Outcome DashboardRun::take_answer(const std::string & line, const Expected<std::string> & answer,
-                                  double timeout)
+Outcome DashboardRun::take_answer(const std::string & line, const Expected<std::string> & answer)
 {
   if (!answer) {
     if (auto why = stop_reason()) {
@@ -168,7 +167,7 @@ Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
   const auto deadline = Clock::now() + to_duration(timeout);
   DashboardSession session(connection_.address());
   if (const Status connected = session.connect(to_duration(timeout), stop_request_->token()); !connected) {
-    return take_answer(request.line, tl::unexpected(connected.error()), timeout);
+    return take_answer(request.line, tl::unexpected(connected.error()));
   }
   auto under_way = begin_start();  // not before: a stop does not wait for the connection
   if (!under_way) {
@@ -176,7 +175,7 @@ Outcome DashboardRun::start(const DashboardRequest & request, double timeout)
   }
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
   const auto answer = session.request_once(request.line, left, stop_request_->token(), late_answer_timeout);
-  Outcome outcome = take_answer(request.line, answer, timeout);
+  Outcome outcome = take_answer(request.line, answer);
   if (outcome && !begins_with(answer_, request.reply)) {
     under_way->reset();
     return rejection(request.line);
@@ -283,8 +282,7 @@ Outcome DashboardRun::until(const ExpectedState & expected, Clock::time_point de
     }
     if (Clock::now() >= deadline) {
       if (expected.is_confirmed_by_answer) {
-        return Outcome::success(fmt::format("{} was {}, and is {} now", expected.query,
-                                            fmt::join(expected.states, " or "), state));
+        return Outcome::success(fmt::format("{}; {} is {} now", answer_, expected.query, state));
       }
       return Outcome::failure(
           ErrorCode::timeout,

@@ -61,6 +61,8 @@ class Process:
 
     def __init__(self, command, env=None, stdin=False):
         self.lines = []
+        if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:  # the tests run under nohup
+            command = ["env", "--default-signal=HUP", *command]
         self._process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                          stdin=subprocess.PIPE if stdin else None,
                                          env={**os.environ, **(env or {})}, text=True, errors="replace")
@@ -134,6 +136,7 @@ class Simulator:
         self._arguments = ["--model", model, "--recovery-time-factor", str(recovery_time_factor),
                            *(f"--urcap={urcap}" for urcap in urcaps), *arguments]
         self.process = None
+        self._lock = threading.Lock()
         self.start()
 
     def start(self):
@@ -153,8 +156,13 @@ class Simulator:
         return True
 
     def control(self, command, **fields):
-        self._socket.sendall((json.dumps({"command": command, **fields}) + "\n").encode())
-        answer = json.loads(self._answers.readline())
+        with self._lock:
+            try:
+                self._socket.sendall((json.dumps({"command": command, **fields}) + "\n").encode())
+                answer = json.loads(self._answers.readline())
+            except TimeoutError:
+                self._connect()  # the late answer must not be that of the next command
+                raise
         assert answer.get("ok"), answer
         return answer
 

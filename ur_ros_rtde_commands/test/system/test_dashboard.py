@@ -143,7 +143,7 @@ def test_a_program_that_runs_again_at_once_was_stopped(addresses, processes):
         try:
             wait_for(lambda: _is_connected(client), 20.0, "the dashboard server to be connected")
             result = command(client, "stop").succeeded(limit=10.0)
-            assert result.message == "programState was STOPPED, and is PLAYING wait.urp now"
+            assert result.message == "Stopped; programState is PLAYING wait.urp now"
         finally:
             client.close()
             controller.shutdown()

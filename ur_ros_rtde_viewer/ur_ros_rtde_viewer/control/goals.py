@@ -4,12 +4,13 @@ import threading
 import time
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Callable, Dict, FrozenSet, List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_cli import actions
+from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
 
 from ur_ros_rtde_msgs.msg import GoalRejected
 
@@ -19,10 +20,7 @@ DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
 END_TIMEOUT = 5.0  # s, for the results of all canceled goals
 REASON_TIMEOUT = 2.0  # s, for the reason of a rejection
 POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
-LOSS_TIME = 2.0  # s without the server of a goal, after which its driver has ended
-CHECK_PERIOD = 0.5  # s, between two looks at the servers
 DASHBOARD = "dashboard/"  # prefix of the actions of dashboard_server
-DRIVER_ENDED = "the driver has ended: the result is unknown"
 
 
 class Phase(Enum):
@@ -50,8 +48,7 @@ class SentGoal:
     feedback: Any = None
     result: Any = None
     handle: Any = None
-    servers: FrozenSet[bytes] = frozenset()  # endpoints of the driver to which the goal was sent
-    lost_at: Optional[float] = None  # monotonic time since which this driver is missing
+    driver: Optional[DriverWatch] = None  # to which the goal was sent
     ended: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -85,7 +82,7 @@ class Goals:
         self._open_lock = threading.Lock()  # goals are sent by the threads of the page
         control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-        control.node.create_timer(CHECK_PERIOD, self._check_servers)
+        control.node.create_timer(CHECK_PERIOD, self._check_drivers)
 
     def full_name(self, name: str) -> str:
         return f"/{self._namespace}/{name}" if self._namespace else f"/{name}"
@@ -151,25 +148,16 @@ class Goals:
                 sent.feedback = message.feedback
                 sent.on_change(sent)
 
-        sent.servers = self._servers(sent)
+        sent.driver = DriverWatch(self._control.node, client, sent.action)
         client.send_goal_async(goal, feedback_callback=on_feedback).add_done_callback(
             lambda future: self._on_response(future.result(), sent))
 
-    def _servers(self, sent: SentGoal) -> FrozenSet[bytes]:
-        """Returns the endpoints that serve the action now: a driver that has been started again has others."""
-        publishers = self._control.node.get_publishers_info_by_topic(f"{sent.action}/_action/status")
-        return frozenset(bytes(info.endpoint_gid) for info in publishers)
-
-    def _check_servers(self) -> None:
-        """Ends the goals whose driver is missing for LOSS_TIME."""
-        now = time.monotonic()
+    def _check_drivers(self) -> None:
+        """Ends the goals that have lost their driver, and cancels them: it may only be out of reach."""
         for sent in self._open:
-            if sent.has_ended or not sent.servers or not sent.servers.isdisjoint(self._servers(sent)):
-                sent.lost_at = None
-            elif sent.lost_at is None:
-                sent.lost_at = now
-            elif now - sent.lost_at >= LOSS_TIME:
-                sent.change(Phase.FAILED, DRIVER_ENDED)
+            if not sent.has_ended and sent.driver is not None and sent.driver.is_gone():
+                self._cancel(sent)
+                sent.change(Phase.FAILED, loss(sent.action))
 
     def _on_response(self, handle: Any, sent: SentGoal) -> None:
         if sent.has_ended:
@@ -182,6 +170,8 @@ class Goals:
                        lambda: sent.change(Phase.REJECTED, "no reason was received on goal_rejections"))
             return
         sent.handle = handle
+        if sent.driver is not None:
+            sent.driver.remember()
         handle.get_result_async().add_done_callback(lambda future: self._on_result(future.result(), sent))
         if sent.phase == Phase.CANCELING:
             handle.cancel_goal_async()

@@ -55,6 +55,8 @@ class TargetPanel:
 
     def close(self) -> None:
         self._closed = True
+        if (goal := self._goal) is not None:  # at once: the loop may be drawing
+            goal.close()
         self._post(self._end)
 
     def _end(self) -> None:
