@@ -122,12 +122,14 @@ with Programs(pathlib.Path({str(tmp_path)!r})) as programs:
     assert (tmp_path / "ended").exists()
 
 
-def test_an_ignored_hang_up_stays_ignored(tmp_path):
-    """As with nohup."""
+def test_a_hang_up_that_nohup_ignores_stays_ignored(tmp_path):
     previous = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with Programs(tmp_path):
-            assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+        with Programs(tmp_path) as programs:
+            os.kill(os.getpid(), signal.SIGHUP)
+            program = programs.start("hangs_up", ["sleep", "60"])
+            program.process.send_signal(signal.SIGHUP)
+            assert program.process.wait(10.0) == -signal.SIGHUP, "it does not inherit it"
         assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, previous)

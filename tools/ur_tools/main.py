@@ -18,7 +18,7 @@ from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulat
 from .environment import program, run_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
-from .processes import interrupt_on_termination
+from .processes import ignore, interrupt_on_termination
 
 Command = Callable[[argparse.Namespace], int]
 
@@ -107,6 +107,8 @@ def _execute(command: List[str], env: Dict[str, str]) -> NoReturn:
     """Replaces this process with a program of the user, which then handles signals itself."""
     for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and the program would inherit that
         signal.signal(number, signal.SIG_DFL)
+    if signal.getsignal(signal.SIGHUP) == ignore:
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
     os.execvpe(command[0], command, env)
 
 

@@ -169,8 +169,13 @@ def _uninterrupted() -> Iterator[None]:
 
 
 def interrupt_on_termination() -> Dict[int, Any]:
-    """Lets `kill` and a closing terminal act like Ctrl-C, unless SIGHUP is ignored, as with nohup. Returns the handlers before."""
-    return {number: signal.signal(number, _interrupt) for number in TERMINATING if signal.getsignal(number) != signal.SIG_IGN}
+    """Lets `kill` and a closing terminal act like Ctrl-C, but not those that are ignored, as by nohup. Returns the handlers before."""
+    return {number: signal.signal(number, ignore if signal.getsignal(number) in (signal.SIG_IGN, ignore) else _interrupt)
+            for number in TERMINATING}
+
+
+def ignore(_number: int, _frame: object) -> None:
+    """Ignores a signal in this process alone: the programs that it starts would inherit SIG_IGN."""
 
 
 def _interrupt(_number: int, _frame: object) -> None:

@@ -61,8 +61,6 @@ class Process:
 
     def __init__(self, command, env=None, stdin=False):
         self.lines = []
-        if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:  # the tests run under nohup
-            command = ["env", "--default-signal=HUP", *command]
         self._process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                          stdin=subprocess.PIPE if stdin else None,
                                          env={**os.environ, **(env or {})}, text=True, errors="replace")
