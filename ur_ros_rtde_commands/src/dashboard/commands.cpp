@@ -42,7 +42,10 @@ EXPORT_DASHBOARD_COMMAND(Play, "dashboard/play", DashboardCommand,
 class Pause : public SimpleDashboardCommand<ur_ros_rtde_msgs::action::DashboardCommand> {
  public:
   // The driver ends its own program as soon as it is paused, and may start it again.
-  Pause() : SimpleDashboardCommand({"pause", "Pausing program", {"programState", {"PAUSED", "STOPPED"}, true}}) {}
+  Pause()
+      : SimpleDashboardCommand({"pause", "Pausing program", {"programState", {"PAUSED", "STOPPED"}, true}})
+  {
+  }
   bool stops_arm() const override { return true; }  // but not the program, which can go on
 };
 UR_ROS_RTDE_EXPORT(Pause, "dashboard/pause")
