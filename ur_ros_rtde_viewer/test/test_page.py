@@ -343,10 +343,12 @@ def test_the_speed_slider_is_set_with_the_keyboard_and_follows_the_robot(tab, si
 def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):
     second = Tab(browser, viewer[-1].url)
     second.open("Jog")
+    second.field("Speed [m/s]").fill("0.01")  # a busy browser closes a tab after seconds: the arm must not come to its limits
     with second.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move")
         second.close()
         until(lambda: not is_moving(simulator), "the arm to stop")
+    assert simulator.state()["safety_mode"] == "NORMAL"
 
 
 def test_two_tabs_have_forms_of_their_own_and_only_one_jogs(browser, tab, viewer, simulator):
