@@ -10,8 +10,9 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, own_address, start_node
+from ur_ros_rtde_cli.driver_watch import loss
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
-from ur_ros_rtde_viewer.control.goals import DRIVER_ENDED, Phase
+from ur_ros_rtde_viewer.control.goals import Phase
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, Banner
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
@@ -263,6 +264,6 @@ def test_a_restart_of_the_driver_after_a_crash_is_shown_and_survived(viewer, rob
     try:
         update_until(viewer, lambda: robot.state.age < 0.5 and not banner.shown, "the state of the restarted driver")
         update_until(viewer, lambda: goal.has_ended, "the end of the goal")
-        assert (goal.phase, goal.message) == (Phase.FAILED, DRIVER_ENDED)
+        assert (goal.phase, goal.message) == (Phase.FAILED, loss("/move_j"))
     finally:
         restarted.stop()
