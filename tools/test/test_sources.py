@@ -1,6 +1,9 @@
+import shutil
+import subprocess
+
 import pytest
 from ur_tools import lint, system_packages
-from ur_tools.layout import Layout
+from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
 
@@ -32,7 +35,7 @@ def layout(tmp_path, monkeypatch):
 def install_program(layout, name, text, status):
     """Installs a program that writes its arguments to a file, prints a text and exits with this status."""
     file = layout.venv / "bin" / name
-    file.write_text(f"#!/bin/sh\necho \"$@\" > '{file}.arguments'\ncat << 'END'\n{text}\nEND\nexit {status}\n")
+    file.write_text(f"#!/bin/sh\necho \"$@\" >> '{file}.arguments'\ncat << 'END'\n{text}\nEND\nexit {status}\n")
     file.chmod(0o755)
     return file.with_name(f"{name}.arguments")
 
@@ -46,6 +49,21 @@ def test_the_findings_in_python_are_shown_and_the_cache_is_not_in_the_sources(la
         arguments = install_program(layout, name, "no issues", 0)
         assert check(layout).ok
         assert f"--cache-dir {layout.base / f'{name}_cache'}" in arguments.read_text()
+
+
+def test_a_test_that_imports_a_name_that_does_not_exist_is_found(layout, tmp_path, monkeypatch):
+    (layout.venv / "bin" / "mypy").symlink_to(shutil.which("mypy"))
+    monkeypatch.setattr(lint, "ROOT", tmp_path)
+    for configuration in ("mypy.ini", "mypy_tests.ini"):
+        shutil.copy(ROOT / configuration, tmp_path)
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "library.py").write_text("LIMIT = 1\n")
+    (tmp_path / "arm" / "test").mkdir(parents=True)
+    (tmp_path / "arm" / "test" / "test_arm.py").write_text("from library import LIMITS\n\nprint(LIMITS)\n")
+    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    result = lint.check_mypy(layout)
+    assert not result.ok and 'test_arm.py:1: error: Module "library" has no attribute "LIMITS"' in result.text
+    assert result.text.count("error:") == 1
 
 
 def test_the_sources_are_checked_by_each_program(layout):

@@ -64,10 +64,20 @@ def check_ruff(layout: Layout) -> Check:
     return Check("sources: ruff", result.returncode == 0, f"{_findings(result)}\n    In `./ur shell`, `ruff check --fix` corrects some.")
 
 
+def _test_folders() -> List[str]:
+    """Returns the folders with tests in Python. Each is checked alone: the names of their modules repeat."""
+    folders = {path.relative_to(ROOT).parent for path in tracked_files() if path.match("test_*.py")}
+    return sorted(str(folder) for folder in folders if "test" in folder.parts)
+
+
 def check_mypy(layout: Layout) -> Check:
-    """Types of all Python except tests, as mypy.ini selects."""
-    result = _run_tool(layout, "mypy", "--no-color-output", "--no-pretty", "--cache-dir", str(layout.base / "mypy_cache"))
-    return Check("sources: mypy", result.returncode == 0, _findings(result))
+    """Types of all Python except tests, as mypy.ini selects, and of the tests, as mypy_tests.ini does."""
+    def run(cache: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
+        return _run_tool(layout, "mypy", "--no-color-output", "--no-pretty", "--cache-dir", str(layout.base / cache), *arguments)
+
+    results = [run("mypy_cache"), *(run("mypy_tests_cache", "--config-file", "mypy_tests.ini", folder) for folder in _test_folders())]
+    failed = [result for result in results if result.returncode]
+    return Check("sources: mypy", not failed, "\n".join(dict.fromkeys("\n".join(map(_findings, failed)).splitlines())))
 
 
 def check_paths() -> Check:

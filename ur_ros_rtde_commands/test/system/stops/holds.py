@@ -77,7 +77,7 @@ def _hold(threads: Sequence[int], seconds: float) -> Dict[str, object]:
     stopped = _wait_for_reports(seized)
     time.sleep(max(0.0, seconds - 1e-9 * (time.time_ns() - begin)))
     killed = [thread for thread, signal in stopped.items() if not _ptrace(PTRACE_DETACH, thread, signal)]
-    report = {"begin": begin, "end": time.time_ns(), "held": len(stopped)}
+    report: Dict[str, object] = {"begin": begin, "end": time.time_ns(), "held": len(stopped)}
     _wait_for_reports(killed)
     return report
 

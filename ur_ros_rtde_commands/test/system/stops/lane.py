@@ -13,7 +13,7 @@ import time
 import traceback
 from dataclasses import asdict, dataclass, field
 from random import Random
-from typing import Dict, List, Optional
+from typing import Any, Dict, List, Optional
 
 import messages
 from cell import StatusTrackingClient
@@ -21,14 +21,14 @@ from own_domain import Domain
 from plugin_prefix import TEST_COMMANDS, environment_of_test_commands
 from rclpy.action import ActionClient
 from rclpy.qos import QoSProfile
-from support import HOME, Simulator, start_node, wait_for
+from support import HOME, Goal, Process, Simulator, start_node, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 from . import goal_kinds, properties, running
 from .cases import PROFILES, Case, draw, profile_of
-from .holds import Holder, threads_of, why_impossible
+from .holds import Hold, Holder, threads_of, why_impossible
 from .motion import CYCLE, Trace
 from .page import Page
 from .stalls import Stalls
@@ -75,18 +75,24 @@ class Lane:
         self._log = log
         self._domain = Domain()
         self._env = {"ROS_DOMAIN_ID": str(self._domain.number), **self._plugins()}
-        self._address, self._profile, self.driver = address, "", None
+        self._address, self._profile = address, ""
+        self.driver: Optional[Process] = None
         self.simulator = Simulator(address, recovery_time_factor=0.02)
         self.scene = goal_kinds.Scene(self.simulator.state()["actual_tcp_pose"])
         self.client = LaneClient(self._domain.number, "stops")
         self.page = Page(self.client)
         self._holder = Holder() if holds else None
-        self._spare, self._publishers = None, {}
+        self._spare: Optional[Process] = None
+        self._publishers: dict = {}
         self.case: Case
-        self.running = None
+        self.running: Any = None  # see running.start()
+        self.trace: Optional[Trace] = None
+        self.fields: dict = {}  # of the goal
+        self.held_threads: list = []
+        self.holds: Optional[Hold] = None
         self._others: list = []  # goals of the event itself
-        self.preempting_goal = None  # the goal that has preempted the one of the case
-        self.waiting_goal = None  # the goal that waited for the arm when the event came
+        self.preempting_goal: Optional[Goal] = None  # the goal that has preempted the one of the case
+        self.waiting_goal: Optional[Goal] = None  # the goal that waited for the arm when the event came
 
     def _plugins(self) -> Dict[str, str]:
         """Returns the environment in which the driver finds the plugins that are built with the tests."""
@@ -314,9 +320,11 @@ class Lane:
         self._wait_for_results(case, report, checks)
         if self.preempting_goal is None:
             self._quiet(case, checks)
+        assert self.trace is not None
         self.trace.update()
         checks.evaluate(self.trace)
         if case.event.ends_driver:
+            assert case.event.recover is not None
             case.event.recover(self)
         if self.preempting_goal is not None:
             self.preempting_goal.succeeded()
