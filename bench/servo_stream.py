@@ -41,7 +41,7 @@ def _trace(control, node, outcome):
         cycles.update((number, published) for number, published, *_ in trace["cycles"])
         last = max(cycles, default=last)
         # The newest cycle is requested again: more targets may arrive in it.
-        arrivals += [(cycle, when) for cycle, when, code in trace["repeats"] if code == SERVO_J and cycle < last]
+        arrivals += [(cycle, when) for cycle, when, code, _is_held in trace["repeats"] if code == SERVO_J and cycle < last]
     return arrivals, cycles
 
 

@@ -3,7 +3,6 @@
 import math
 import re
 import signal
-import statistics
 import time
 
 import pytest
@@ -66,9 +65,10 @@ def swing(t):
 
 
 def is_regular(recorder, publish_times, first, last):
-    """Returns whether publisher, driver and simulator were on time, from 0.1 s before this window of cycles to its end."""
+    """Returns whether publisher, driver and simulator were on time, from 0.1 s before this window of cycles to its end. The driver was
+    not where it waited at its target for a message."""
     begin = first - 50
-    if begin not in recorder.published or recorder.gaps(4, begin, last):
+    if begin not in recorder.published or recorder.gaps(4, begin, last) or not recorder.held.isdisjoint(range(begin, last + 1)):
         return False
     span = recorder.published[last] - recorder.published[begin]
     around = [when for when in publish_times if recorder.published[begin] - PERIOD < when < recorder.published[last] + PERIOD]
@@ -101,10 +101,8 @@ def test_servo_joint_at_50_hz_moves_smoothly(robot, simulator):
         has_followed, accelerations = has_followed or followed, accelerations + measured
         if has_followed and len(accelerations) > 100:
             break
-    assert has_followed and len(accelerations) > 100, "the host delayed the messages nearly all the time"
-    # A target held constant between messages would cause ten times higher values nearly everywhere. After a message that was late within
-    # the driver's process, which nothing here records, the arm catches up.
-    assert statistics.quantiles(accelerations, n=10)[-1] < 3.0 * 0.37
+    assert has_followed and len(accelerations) > 100, "the messages were late, or the driver waits for each, nearly all the time"
+    assert max(accelerations) < 3.0 * 0.37  # a target held constant between messages would cause ten times higher values
 
 
 def test_servo_joint_accepts_any_order_and_ignores_other_joints(robot):

@@ -48,6 +48,7 @@ class TargetRecorder:
         self._simulator = simulator
         self._first_cycle = self._last_cycle = simulator.state()["cycle"]
         self._setpoint_cycles = set()
+        self.held = set()  # cycles in which a setpoint arrived that is the one before
         self.joint_speeds = {}  # of the fastest target joint in rad/s, by cycle
         self.tcp_speeds = {}  # m/s, by cycle
         self.published = {}  # time in ns since the epoch at which the simulator sent the state, by cycle
@@ -62,6 +63,7 @@ class TargetRecorder:
             self.joint_speeds[cycle] = joint_speed
             self.tcp_speeds[cycle] = tcp_speed
         self._setpoint_cycles.update(cycle for cycle, *_ in trace["repeats"] if cycle > self._first_cycle)
+        self.held.update(cycle for cycle, _arrived, _code, is_held in trace["repeats"] if is_held)
         self._last_cycle += len(cycles)
         return self
 

@@ -67,6 +67,11 @@ json command_to_json(const CycleTrace::Command & command)
   return {command.cycle, command.arrived, command.code};
 }
 
+json repeat_to_json(const CycleTrace::Repeat & repeat)
+{
+  return {repeat.cycle, repeat.arrived, repeat.code, repeat.is_held};
+}
+
 Action trace(RequestFields & fields)
 {
   const auto after = static_cast<std::uint64_t>(fields.integer("after", 0, INT64_MAX, 0));
@@ -81,7 +86,7 @@ Action trace(RequestFields & fields)
     }
     return {{"cycles", entries_from(trace.cycles(), after + 1, cycle_to_json)},
             {"commands", entries_from(trace.commands(), after, command_to_json)},
-            {"repeats", entries_from(trace.repeats(), after, command_to_json)}};
+            {"repeats", entries_from(trace.repeats(), after, repeat_to_json)}};
   };
 }
 
@@ -96,7 +101,7 @@ constexpr std::array query_command_table{
         "of sending, largest target joint speed rad/s, target TCP speed m/s], the commands in input integer "
         "register 0 from "
         "cycle 'after' on (at most 256) as [cycle, arrival, code], and separately those with the same "
-        "code as the previous one (at most 16384). Fails if data after 'after' has been overwritten.",
+        "code as the previous one (at most 16384), followed by whether they hold its target. Fails if data after 'after' has been overwritten.",
         trace},
 };
 

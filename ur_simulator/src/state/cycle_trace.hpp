@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -68,6 +69,9 @@ class CycleTrace {
     std::int64_t arrived = 0;  ///< time at which the data package was read, ns since the epoch
     std::int32_t code = 0;     ///< input integer register 0: the command number of ur_rtde
   };
+  struct Repeat : Command {
+    bool is_held = false;  ///< the target is that of the package before
+  };
 
   /// Call before the packages of a cycle are sent: the first client may receive its package before the last
   /// package is sent.
@@ -82,13 +86,16 @@ class CycleTrace {
   void record_command(const ControllerState & state, bool with_arguments)
   {
     const std::int32_t code = state.inputs.integers[0];
+    Target target{};
+    std::copy_n(state.inputs.doubles.begin(), target.size(), target.begin());
     if (code != 0 && code == last_code_ && with_arguments) {
-      repeats_.add({state.cycle, now(), code});
+      repeats_.add({{state.cycle, now(), code}, target == last_target_});
     }
     if (code != 0 && code != last_code_) {
       commands_.add({state.cycle, now(), code});
     }
     last_code_ = code;
+    last_target_ = target;
   }
 
   /// Call when the count of cycles restarts.
@@ -98,11 +105,12 @@ class CycleTrace {
     commands_.clear();
     repeats_.clear();
     last_code_ = 0;
+    last_target_ = {};
   }
 
   const TraceBuffer<Cycle> & cycles() const { return cycles_; }
   const TraceBuffer<Command> & commands() const { return commands_; }
-  const TraceBuffer<Command> & repeats() const { return repeats_; }
+  const TraceBuffer<Repeat> & repeats() const { return repeats_; }
   /// The data of all later cycles is complete.
   std::uint64_t last_incomplete_cycle() const
   {
@@ -111,6 +119,9 @@ class CycleTrace {
   }
 
  private:
+  /// Input double registers 0 to 5: the position, pose or speed of ur_rtde's commands.
+  using Target = std::array<double, 6>;
+
   static std::int64_t now()
   {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
@@ -118,8 +129,9 @@ class CycleTrace {
 
   TraceBuffer<Cycle> cycles_{cycle_capacity};
   TraceBuffer<Command> commands_{command_capacity};
-  TraceBuffer<Command> repeats_{repeat_capacity};
+  TraceBuffer<Repeat> repeats_{repeat_capacity};
   std::int32_t last_code_ = 0;
+  Target last_target_{};
 };
 
 }  // namespace ur_simulator

@@ -148,7 +148,7 @@ TEST_F(ControlPortTest, TracesCommandsAndRepeatsButNotWatchdogKicks)
   servo(0.1);
   servo(0.2);
   rtde_client.send('U', data_package_header(2) + encode_int32(11));
-  servo(0.3);
+  servo(0.2);
   rtde_client.send('U', data_package_header(2) + encode_int32(0));
   rtde_client.send('U', data_package_header(2) + encode_int32(66));
   json trace;
@@ -161,6 +161,8 @@ TEST_F(ControlPortTest, TracesCommandsAndRepeatsButNotWatchdogKicks)
   ASSERT_EQ(trace["repeats"].size(), 2U) << trace["repeats"];
   EXPECT_EQ(trace["repeats"][0][2], 11);
   EXPECT_LE(trace["repeats"][0][1], trace["repeats"][1][1]);
+  EXPECT_EQ(trace["repeats"][0][3], false) << "a new target";
+  EXPECT_EQ(trace["repeats"][1][3], true) << "the target before";
 }
 
 TEST_F(ControlPortTest, TraceFailsIfRequestedCyclesWereOverwritten)
