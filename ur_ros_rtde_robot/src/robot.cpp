@@ -138,8 +138,8 @@ Locked<ur_rtde::DashboardClient> Robot::dashboard() const
 Expected<std::string> Robot::query_dashboard(const std::string & line, std::chrono::milliseconds timeout,
                                              const std::stop_token & stop) const
 {
-  if (const auto controller = version(); controller && controller->is_polyscope_x()) {
-    return tl::unexpected(no_dashboard_server(*controller));
+  if (const auto has = has_dashboard_server(version()); !has) {
+    return tl::unexpected(has.error());
   }
   return impl_->dashboard.request(line, timeout, stop);
 }

@@ -64,7 +64,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
       model(options.address, options.model, log),
-      control_scripts(options.upper_range_registers),
+      control_scripts(options.upper_range_registers, log),
       interfaces(options, control_scripts, log),
       registers(options, interfaces),
       activities(interfaces, registers, tracker),
@@ -74,10 +74,8 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
           log),
       server(options.urcap_port, options.retry_interval,
              {[this] { return state.version(); },
-              [this, log](const ControllerVersion & version) {
-                for (const std::string & problem : control_scripts.leave_out_unfit(version)) {
-                  log(LogLevel::error, problem);
-                }
+              [this](const ControllerVersion & version) {
+                control_scripts.leave_out_unfit(version);
                 return control_scripts.program(version);
               }},
              log),

@@ -125,7 +125,7 @@ class DashboardHost : public PluginHost {
   {
   }
   DashboardConnection & connection() { return connection_; }
-  /// PolyScope X has none (not_supported). Success while the version is unknown.
+  /// See ur_ros_rtde::has_dashboard_server().
   Status has_dashboard_server() const;
   /// The same as of CommandHost.
   std::shared_ptr<void> end_script(const Error & why) const

@@ -244,13 +244,12 @@ Outcome DashboardRun::rejection(const std::string & line)
     return Outcome::failure(ErrorCode::not_supported,
                             answer + ": this version of PolyScope does not have it");
   }
-  // Queried again: the value known from the heartbeat may be older than the command.
-  const auto remote =
-      connection_.in_remote_control()
-          ? connection_.request("is in remote control", answer_timeout, stop_request_->token())
-          : Expected<std::string>();
-  if (remote && *remote == "false") {
-    answer += ": the robot is in local control, switch it to remote on the teach pendant";
+  if (connection_.in_remote_control()) {
+    // Queried again: the value known from the heartbeat may be older than the command.
+    const auto remote = connection_.request("is in remote control", answer_timeout, stop_request_->token());
+    if (remote && *remote == "false") {
+      answer += ": the robot is in local control, switch it to remote on the teach pendant";
+    }
   }
   return Outcome::failure(ErrorCode::rejected_by_robot, answer);
 }

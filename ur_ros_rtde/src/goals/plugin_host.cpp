@@ -74,8 +74,8 @@ void CommandHost::wait_for_startup_requests()
 
 Status DashboardHost::has_dashboard_server() const
 {
-  const auto version = commands_ != nullptr ? commands_->robot().version() : std::nullopt;
-  return version && version->is_polyscope_x() ? tl::unexpected(no_dashboard_server(*version)) : Status();
+  return ur_ros_rtde::has_dashboard_server(commands_ != nullptr ? commands_->robot().version()
+                                                                : std::nullopt);
 }
 
 Expected<std::shared_ptr<void>> DashboardHost::begin_startup_request(std::uint32_t stops) const

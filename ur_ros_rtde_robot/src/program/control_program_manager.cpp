@@ -345,8 +345,8 @@ ControlProgramManager::Outcome ControlProgramManager::follow_program(bool robot_
 
 ControlProgramManager::Outcome ControlProgramManager::check_robot(const std::optional<Error> & blocker)
 {
-  if (const auto version = receiver_.version(); version && version->is_polyscope_x()) {
-    return stopped_by(no_dashboard_server(*version));
+  if (const auto has = has_dashboard_server(receiver_.version()); !has) {
+    return stopped_by(has.error());
   }
   if (const auto io = interfaces_.ensure_io(); !io) {
     auto failed = interface_failed(io.error());

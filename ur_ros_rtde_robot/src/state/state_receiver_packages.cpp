@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "state/state_receiver_impl.hpp"
+#include "ur_ros_rtde_robot/connection/rtde_subscription.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -59,9 +60,7 @@ StateReceiver::Impl::Clock::time_point StateReceiver::Impl::last_activity(ur_rtd
 Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDEReceiveInterface & interface)
 {
   const auto state = interface.getRobotState();
-  const auto silence_limit =
-      std::max(options_.silence_limit,
-               std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(5.0 / frequency_)));
+  const auto silence_limit = ur_ros_rtde::silence_limit(options_.silence_limit, frequency_);
   // If this host was busy, packages may be waiting in the socket: the last part of the limit is reserved for
   // ur_rtde's thread to read them. After a longer delay of this host, the limit begins anew, once.
   const auto last_wait = std::min(reading_time, silence_limit / 2);

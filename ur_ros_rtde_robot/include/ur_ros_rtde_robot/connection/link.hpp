@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "ur_ros_rtde_trajectory/error.hpp"
@@ -32,7 +33,7 @@ struct ControllerVersion {
 
 std::string to_string(const ControllerVersion & version);
 
-/// What PolyScope X lacks.
-Error no_dashboard_server(const ControllerVersion & version);
+/// PolyScope X has none (not_supported). Success while the version is unknown.
+Status has_dashboard_server(const std::optional<ControllerVersion> & version);
 
 }  // namespace ur_ros_rtde

@@ -38,8 +38,8 @@ class RtdeSubscription {
   std::size_t width() const;
   /// Hz, as agreed with the controller.
   double frequency() const;
-  /// How long packages may stay out before the connection counts as lost: `limit`, but at least 5 periods.
-  Clock::duration silence_limit(Clock::duration limit) const;
+  /// See ur_ros_rtde::silence_limit().
+  std::chrono::milliseconds silence_limit(std::chrono::milliseconds limit) const;
 
   /// Waits for the next package and writes its width() values, one field after the other; false if none
   /// arrives before the deadline. Does not allocate in steady state. Errors: link_lost.
@@ -50,5 +50,9 @@ class RtdeSubscription {
   explicit RtdeSubscription(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// How long RTDE packages of this frequency in Hz may stay out before the connection counts as lost: `limit`,
+/// but at least 5 periods.
+std::chrono::milliseconds silence_limit(std::chrono::milliseconds limit, double frequency);
 
 }  // namespace ur_ros_rtde

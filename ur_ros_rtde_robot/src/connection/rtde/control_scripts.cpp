@@ -123,9 +123,9 @@ std::string ControlScripts::place(const ControllerVersion & version, int line) c
   return script ? script::place(*script, line) : std::string();
 }
 
-std::vector<std::string> ControlScripts::leave_out_unfit(const ControllerVersion & version)
+void ControlScripts::leave_out_unfit(const ControllerVersion & version)
 {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   const std::string base = ur_rtde::ScriptClient::getDefaultScript();
   std::vector<std::string> problems;
   std::erase_if(extensions_, [&](const ScriptExtension & extension) {
@@ -142,7 +142,10 @@ std::vector<std::string> ControlScripts::leave_out_unfit(const ControllerVersion
   if (!problems.empty()) {
     script_ = script::compose(base, extensions_).value();
   }
-  return problems;
+  lock.unlock();
+  for (const std::string & problem : problems) {
+    log_(LogLevel::error, problem);
+  }
 }
 
 std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const ControllerVersion & version, int line,

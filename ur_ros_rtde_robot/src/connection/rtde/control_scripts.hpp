@@ -4,10 +4,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "script/control_script.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
+#include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/script/script_extension.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -16,7 +18,10 @@ namespace ur_ros_rtde {
 /// Composes the control script: that of ur_rtde plus the code of the extensions. Thread-safe.
 class ControlScripts {
  public:
-  explicit ControlScripts(bool upper_range_registers) : upper_range_(upper_range_registers) {}
+  ControlScripts(bool upper_range_registers, LogFunction log)
+      : upper_range_(upper_range_registers), log_(std::move(log))
+  {
+  }
 
   /// Replaces the extensions. Returns one message per omitted extension, with the reason.
   std::vector<std::string> set(const std::vector<ScriptExtension> & extensions);
@@ -39,8 +44,8 @@ class ControlScripts {
     std::string urcap = {};  ///< missing on the robot; empty: the extension is faulty
   };
   /// Omits the extensions whose code is incomplete in this version of the controller, as when only one end of
-  /// a block has a version marker. Returns one message for each, with the reason.
-  std::vector<std::string> leave_out_unfit(const ControllerVersion & version);
+  /// a block has a version marker. Logs each with the reason.
+  void leave_out_unfit(const ControllerVersion & version);
   /// Omits the extension to which this line of text() belongs, since the controller rejects it. None if the
   /// line does not belong to an extension.
   std::optional<LeftOut> leave_out(const ControllerVersion & version, int line,
@@ -55,6 +60,7 @@ class ControlScripts {
   std::string resolved_text(const script::ControlScript & script, const ControllerVersion & version) const;
 
   const bool upper_range_;
+  const LogFunction log_;
   mutable std::mutex mutex_;
   std::vector<ScriptExtension> extensions_;
   std::map<std::string, LeftOut> left_out_;  ///< by name

@@ -139,9 +139,7 @@ Status RtdeInterfaces::set_watchdog(double frequency)
 Status RtdeInterfaces::check_extensions(const ControllerVersion & version)
 {
   if (!extensions_checked_) {
-    for (const std::string & problem : scripts_.leave_out_unfit(version)) {
-      log_(LogLevel::error, problem);
-    }
+    scripts_.leave_out_unfit(version);
   }
   while (!extensions_checked_ && scripts_.has_extensions()) {
     const auto rejection =

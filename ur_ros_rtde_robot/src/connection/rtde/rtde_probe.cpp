@@ -116,13 +116,16 @@ std::string to_string(const ControllerVersion & version)
   return fmt::format("{}.{}.{}", version.major, version.minor, version.bugfix);
 }
 
-Error no_dashboard_server(const ControllerVersion & version)
+Status has_dashboard_server(const std::optional<ControllerVersion> & version)
 {
-  return {
+  if (!version || !version->is_polyscope_x()) {
+    return {};
+  }
+  return failure(
       ErrorCode::not_supported,
       fmt::format("the controller has PolyScope {}: PolyScope X has no dashboard server, which this driver "
                   "needs. Use a robot with PolyScope 5 or 3 (docs/use/polyscope_x.md)",
-                  to_string(version))};
+                  to_string(*version)));
 }
 
 }  // namespace ur_ros_rtde

@@ -308,16 +308,21 @@ double RtdeSubscription::frequency() const
   return impl_->frequency_;
 }
 
-RtdeSubscription::Clock::duration RtdeSubscription::silence_limit(Clock::duration limit) const
+std::chrono::milliseconds RtdeSubscription::silence_limit(std::chrono::milliseconds limit) const
 {
-  constexpr double periods = 5.0;
-  return std::max(limit,
-                  std::chrono::ceil<Clock::duration>(std::chrono::duration<double>(periods / frequency())));
+  return ur_ros_rtde::silence_limit(limit, frequency());
 }
 
 Expected<bool> RtdeSubscription::next(std::span<double> numbers, Clock::time_point deadline)
 {
   return impl_->next(numbers, deadline);
+}
+
+std::chrono::milliseconds silence_limit(std::chrono::milliseconds limit, double frequency)
+{
+  constexpr double periods = 5.0;
+  return std::max(limit, std::chrono::ceil<std::chrono::milliseconds>(
+                             std::chrono::duration<double>(periods / frequency)));
 }
 
 }  // namespace ur_ros_rtde
