@@ -4,7 +4,8 @@ import json
 import os
 import pathlib
 
-from support import Simulator, start_node, wait_for
+from programs import Simulator, start_node
+from support import wait_for
 
 CLEARING_LIMIT = 20.0  # s
 

@@ -43,7 +43,7 @@ def build(folder: pathlib.Path) -> pathlib.Path:
 
 
 def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]) -> int:
-    from support import Simulator, start_node
+    from programs import Simulator, start_node
     from ur_tools.isolation import Domain
 
     with Domain() as domain:

@@ -16,7 +16,7 @@ for folder in ("demo", "ur_ros_rtde_commands/test/system"):
     sys.path.insert(0, str(ROOT / folder))
 
 from control_port import ControlPort  # noqa: E402
-from support import Process  # noqa: E402
+from programs import Process  # noqa: E402
 
 MEASURES_TIME = True
 PNG = b"\x89PNG\r\n\x1a\n"

@@ -7,7 +7,8 @@ import shlex
 import numpy as np
 import pytest
 import yaml
-from support import Simulator, own_address, wait_for
+from programs import Simulator
+from support import own_address, wait_for
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck
 from ur_ros_rtde_cli.robot_check.finding import State

@@ -9,9 +9,11 @@ import time
 
 import pytest
 import yaml
+from programs import Process, find_program, start_node
 from rclpy.action import ActionServer
 from rclpy.task import Future
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, find_program, start_node, wait_for
+from ros_client import Client
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, goal, output_on_terminal, slow_motion, ur, wait_until_moving
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ

@@ -9,9 +9,11 @@ import time
 from types import SimpleNamespace
 
 import pytest
+from programs import Process, find_program
+from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
-from support import Client, Process, find_program, wait_for
+from support import wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
 from ur_ros_rtde_cli import print_state, view
 from ur_ros_rtde_cli.errors import CliError

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from support import find_program
+from programs import find_program
 from ur_ros_rtde_cli.main import CHECKOUT_VARIABLE
 
 BACKGROUND = True

@@ -8,7 +8,8 @@ import sys
 import threading
 
 import pytest
-from support import Process, Simulator, find_program, own_address, wait_for
+from programs import Process, Simulator, find_program
+from support import own_address, wait_for
 from ur_ros_rtde_cli.main import main
 from ur_ros_rtde_cli.robot_check import host, identity, inputs, link, stream
 from ur_ros_rtde_cli.robot_check.checks import Options, RobotCheck

@@ -5,7 +5,7 @@ import pathlib
 import re
 import shlex
 
-from support import simulated_robot
+from robot_fixtures import simulated_robot
 from ur_program import ur
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "use"

@@ -6,7 +6,9 @@ import pty
 import subprocess
 
 import pytest
-from support import TIMEOUT_FACTOR, Process, find_program, simulated_robot, wait_for
+from programs import Process, find_program
+from robot_fixtures import simulated_robot
+from support import TIMEOUT_FACTOR, wait_for
 from ur_program import EMPTY_DOMAIN
 from ur_ros_rtde_cli import report
 

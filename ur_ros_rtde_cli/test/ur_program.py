@@ -11,7 +11,9 @@ import termios
 
 import pytest
 import yaml
-from support import HOME, TIMEOUT_FACTOR, Process, find_program, simulated_robot, wait_for
+from programs import Process, find_program
+from robot_fixtures import simulated_robot
+from support import HOME, TIMEOUT_FACTOR, wait_for
 
 DISCOVERY = str(8.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
 EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102

@@ -1,8 +1,10 @@
 """Tests the commands of the Robotiq gripper with the simulated URCap."""
 
 import pytest
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
-from support import Client, Simulator, start_node, wait_for
+from ros_client import Client
+from support import wait_for
 from ur_ros_rtde_gripper_commands.action import RobotiqActivate, RobotiqGetStatus, RobotiqGrip, RobotiqMove
 
 from ur_ros_rtde_msgs.action import MoveJ

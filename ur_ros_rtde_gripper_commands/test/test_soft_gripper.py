@@ -1,8 +1,10 @@
 """Tests the soft gripper commands with the simulated URCap."""
 
 import pytest
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
-from support import Client, Simulator, start_node, wait_for
+from ros_client import Client
+from support import wait_for
 from ur_ros_rtde_gripper_commands.action import SgGetWidth, SgGrip, SgRelease
 
 from ur_ros_rtde_msgs.msg import ErrorCode

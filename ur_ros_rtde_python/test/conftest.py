@@ -7,8 +7,9 @@ import pytest
 
 # These tests use the helpers and fixtures of the system tests of the driver.
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde_commands" / "test" / "system"))
+from programs import Simulator, start_node
 from robot_fixtures import addresses, driver, simulator
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, wait_for
 from ur_ros_rtde import CommandFailed, Rejected, Robot
 
 __all__ = ["addresses", "driver", "simulator"]

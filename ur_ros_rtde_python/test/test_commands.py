@@ -11,7 +11,8 @@ import threading
 
 import numpy as np
 import pytest
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Process, start_node, wait_for
+from programs import Process, start_node
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, wait_for
 from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, RobotError, Timeout, UnknownCommand, pose, trajectory
 from ur_ros_rtde.commands import names
 from ur_ros_rtde_cli.new import ROBOT_MEMBERS

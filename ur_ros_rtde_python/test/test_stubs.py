@@ -5,7 +5,8 @@ import re
 
 import pytest
 from plugin_prefix import create_plugin_prefix, prepend_path
-from support import Client, wait_for
+from ros_client import Client
+from support import wait_for
 from ur_ros_rtde import stubs
 from ur_ros_rtde.commands import names
 from ur_ros_rtde_cli import actions

@@ -5,8 +5,9 @@ import time
 
 import numpy as np
 import pytest
+from programs import Simulator, start_node
 from stops.stalls import Stalls
-from support import HOME, TIMEOUT_FACTOR, Simulator, start_node, wait_for
+from support import HOME, TIMEOUT_FACTOR, wait_for
 from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, trajectory, wait_for_all
 
 PLUGINS = "plugins:=[move_j,stop,follow_joint_trajectory,trigger_protective_stop,make_ready]"

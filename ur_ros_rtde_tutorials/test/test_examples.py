@@ -8,7 +8,10 @@ import subprocess
 import sys
 
 import pytest
-from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, Client, Process, Simulator, find_program, simulated_robot, start_node, wait_for
+from programs import Process, Simulator, find_program, start_node
+from robot_fixtures import simulated_robot
+from ros_client import Client
+from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 

@@ -6,7 +6,8 @@ import signal
 
 import pytest
 from geometry_msgs.msg import Twist, Vector3
-from support import HOME, Process, find_program, wait_for
+from programs import Process, find_program
+from support import HOME, wait_for
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
 from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce

@@ -2,7 +2,8 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from support import start_node, wait_for
+from programs import start_node
+from support import wait_for
 from ur_ros_rtde_tutorials.action import VacuumPick
 
 from ur_ros_rtde_msgs.action import MoveJRelative, SetDigitalOutput

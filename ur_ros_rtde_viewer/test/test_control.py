@@ -9,8 +9,8 @@ from unittest.mock import MagicMock
 import numpy as np
 import pytest
 import rclpy
+from ros_client import Client
 from running_viewer import RunningViewer, until
-from support import Client
 from ur_ros_rtde_cli import interface_files
 from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_cli.fields import FieldError

@@ -8,8 +8,9 @@ import xml.etree.ElementTree as xml
 import numpy as np
 import pytest
 from arm_state import AT_REST, home_plus
+from programs import start_node
 from running_viewer import RunningViewer, Tab, chromium, until
-from support import HOME, start_node
+from support import HOME
 from ur_ros_rtde_description.models import JOINTS
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.tree import link_poses

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 from arm_state import AT_REST, home_plus
+from programs import start_node
 from robot_fixtures import make_ready
 from running_viewer import RunningViewer, until
-from support import start_node
 from ur_ros_rtde_viewer.control.control import Control
 from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT, SILENCE_TIMEOUT, Outcome
 

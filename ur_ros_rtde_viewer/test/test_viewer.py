@@ -7,9 +7,11 @@ from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+from programs import Simulator, start_node
+from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import HOME, JOINTS, TIMEOUT_FACTOR, Client, Simulator, own_address, start_node
+from support import HOME, JOINTS, TIMEOUT_FACTOR, own_address
 from ur_ros_rtde_cli.driver_watch import loss
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
 from ur_ros_rtde_viewer.control.goals import Phase

@@ -5,9 +5,11 @@ import time
 import messages
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from own_domain import Domain
+from programs import Simulator, start_node
 from publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from support import HOME, Client, Simulator, own_address, start_node, wait_for
+from ros_client import Client
+from support import HOME, own_address, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, EnableExternalFtSensor, MoveJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode

@@ -10,7 +10,9 @@ import pytest
 import rclpy.action
 import ur_rtde_headers
 from own_domain import Domain
-from support import Client, start_node, wait_for
+from programs import start_node
+from ros_client import Client
+from support import wait_for
 
 PLUGINS = plugins.find()
 UNIT = re.compile(r"\d|[A-Z]{3,} or |\b(rad|m|s|N|Nm|Hz|kg|V|A)\b|see |index|whole|by rows")

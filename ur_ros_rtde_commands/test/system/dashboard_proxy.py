@@ -6,7 +6,8 @@ import socketserver
 import threading
 
 import robot_fixtures
-from support import Client, Simulator, start_node
+from programs import Simulator, start_node
+from ros_client import Client
 
 DASHBOARD_PORT = 29999
 PORT_BEHIND = 29998  # of the simulator's dashboard server

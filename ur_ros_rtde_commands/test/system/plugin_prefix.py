@@ -4,7 +4,7 @@ import os
 import pathlib
 import shutil
 
-from support import find_program
+from programs import find_program
 
 # Commands that are built with the tests (test/plugins), and their package.
 TEST_COMMANDS = "test_commands"

@@ -1,9 +1,12 @@
 """Fixtures for tests with a simulated robot: the simulator, a driver connected to it, and a client."""
 
+import contextlib
 import time
 
 import pytest
-from support import HOME, REAL_TIME_FACTOR, RECOVERY_TIME_FACTOR, Client, Simulator, own_address, start_node, wait_for
+from programs import Simulator, start_node
+from ros_client import Client
+from support import HOME, REAL_TIME_FACTOR, RECOVERY_TIME_FACTOR, own_address, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -128,3 +131,18 @@ def robot(simulator, driver, client):
     simulator.control("speed_slider", fraction=1.0)
     make_ready(client)
     return client
+
+
+@contextlib.contextmanager
+def simulated_robot(*parameters, model="ur10e", env=None):
+    """Yields a simulator whose driver, with these parameters, accepts motions."""
+    simulator = Simulator(own_address(), model=model)
+    driver = start_node("driver", simulator.address, *parameters, env=env)
+    client = Client()
+    try:
+        wait_for(lambda: client.send(MoveJ, "move_j", joint_positions=HOME).accepted, 30.0, "the driver to accept a motion")
+        yield simulator
+    finally:
+        client.close()
+        driver.stop()
+        simulator.stop()

@@ -3,7 +3,8 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from plugin_prefix import environment_of_test_commands
-from support import start_node, wait_for
+from programs import start_node
+from support import wait_for
 from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import SendScript, SpeedJ

@@ -7,8 +7,10 @@ import sys
 
 import pytest
 from action_msgs.msg import GoalStatus
+from programs import Process, Simulator, start_node
 from robot_fixtures import make_ready
-from support import FEW_PLUGINS, HOME, REAL_TIME_FACTOR, Client, Process, Simulator, start_node, wait_for
+from ros_client import Client
+from support import FEW_PLUGINS, HOME, REAL_TIME_FACTOR, wait_for
 from unique_identifier_msgs.msg import UUID
 
 from ur_ros_rtde_msgs.action import MoveJ, Trigger

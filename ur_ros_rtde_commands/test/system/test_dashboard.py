@@ -5,7 +5,9 @@ import threading
 
 import pytest
 from action_msgs.msg import GoalStatus
-from support import Client, Simulator, start_node, wait_for
+from programs import Simulator, start_node
+from ros_client import Client
+from support import wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, DashboardText
 from ur_ros_rtde_msgs.msg import ErrorCode

@@ -2,9 +2,11 @@
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from programs import start_node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_client import Client
 from std_msgs.msg import String
-from support import FEW_PLUGINS, Client, start_node, wait_for
+from support import FEW_PLUGINS, wait_for
 from ur_ros_rtde_cli.robot_check.primary import read_arm_data
 from ur_ros_rtde_description import controller_calibration
 from ur_ros_rtde_description.models import find_model

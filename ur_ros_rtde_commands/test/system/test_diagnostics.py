@@ -2,7 +2,8 @@
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from support import FEW_PLUGINS, HOME, Simulator, seconds, start_node, wait_for
+from programs import Simulator, start_node
+from support import FEW_PLUGINS, HOME, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 

@@ -11,7 +11,8 @@ import sys
 import time
 
 import pytest
-from support import NAMES_COMMANDS, TIMEOUT_FACTOR, start_node, wait_for
+from programs import start_node
+from support import NAMES_COMMANDS, TIMEOUT_FACTOR, wait_for
 
 CLIENTS = pathlib.Path(__file__).parent / "discovery_clients.py"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")

@@ -9,7 +9,8 @@ from arm_state import home_plus
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointComponentTolerance, JointTolerance
-from support import HOME, JOINTS, start_node, wait_for
+from programs import start_node
+from support import HOME, JOINTS, wait_for
 from trajectories import point, timed
 
 Result = FollowJointTrajectory.Result

@@ -6,9 +6,10 @@ import pathlib
 import pytest
 import rclpy
 import yaml
+from programs import Process, find_program
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
-from support import Process, find_program, wait_for
+from support import wait_for
 from ur_ros_rtde_launch import launch_arguments
 from ur_ros_rtde_launch.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_differ, check_name, to_values
 

@@ -10,8 +10,10 @@ import time
 
 import pytest
 from action_msgs.msg import GoalStatus
+from programs import Process, Simulator, find_program, start_node
 from robot_fixtures import make_ready, send_after_stop
-from support import FEW_PLUGINS, HOME, Client, Process, Simulator, find_program, start_node, wait_for
+from ros_client import Client
+from support import FEW_PLUGINS, HOME, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DirectTorque, MoveJ, SendScript, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode

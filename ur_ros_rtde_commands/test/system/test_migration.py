@@ -8,8 +8,9 @@ import re
 
 import pytest
 import rclpy.action
+from programs import start_node
 from rcl_interfaces.srv import ListParameters
-from support import start_node, wait_for
+from support import wait_for
 from ur_ros_rtde_launch.launch_arguments import DRIVER, MOVEIT
 
 from ur_ros_rtde_msgs.action import ServoJ

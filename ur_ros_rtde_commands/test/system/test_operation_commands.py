@@ -7,7 +7,9 @@ import robot_fixtures
 from action_msgs.msg import GoalStatus
 from arm_state import home_plus, wait_until_moving
 from dashboard_proxy import PassesOn, robot_behind
-from support import HOME, Client, Simulator, start_node, wait_for
+from programs import Simulator, start_node
+from ros_client import Client
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardText, MakeReady, MoveJ, SendScript, Stop, Trigger
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode

@@ -1,7 +1,8 @@
 """Selection of plugins, and error messages for plugins that cannot be loaded."""
 
 from plugin_prefix import prepend_path
-from support import HOME, NAMES_COMMANDS, start_node, wait_for
+from programs import start_node
+from support import HOME, NAMES_COMMANDS, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SetDigitalOutput
 

@@ -5,7 +5,9 @@ import resource
 import struct
 
 import pytest
-from support import HOME, Client, Process, find_program, start_node, wait_for
+from programs import Process, find_program, start_node
+from ros_client import Client
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 

@@ -2,9 +2,11 @@
 
 import pytest
 from geometry_msgs.msg import TwistStamped
+from programs import Simulator, start_node
+from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64
-from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, wait_for
 
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode, RobotMode, RobotState, SafetyMode, ToolData
 

@@ -3,8 +3,9 @@
 import pytest
 from action_msgs.msg import GoalStatus
 from plugin_prefix import environment_of_test_commands
+from programs import start_node
 from robot_fixtures import make_ready
-from support import HOME, start_node, wait_for
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import SendScript
 from ur_ros_rtde_msgs.msg import ErrorCode

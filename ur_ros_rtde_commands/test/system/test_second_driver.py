@@ -3,10 +3,12 @@
 import time
 
 import pytest
+from programs import start_node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from robot_fixtures import make_ready
+from ros_client import Client
 from std_msgs.msg import Header
-from support import FEW_PLUGINS, HOME, Client, start_node, wait_for
+from support import FEW_PLUGINS, HOME, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ, SpeedJ
 from ur_ros_rtde_msgs.msg import DriverState, ErrorCode

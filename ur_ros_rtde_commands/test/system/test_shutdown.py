@@ -4,8 +4,10 @@ import re
 
 import pytest
 from action_msgs.msg import GoalStatus
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
-from support import FEW_PLUGINS, HOME, Client, Simulator, start_node, wait_for
+from ros_client import Client
+from support import FEW_PLUGINS, HOME, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 

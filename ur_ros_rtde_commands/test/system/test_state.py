@@ -5,10 +5,12 @@ import math
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
+from programs import Simulator, start_node
+from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
-from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, robot_seconds, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, robot_seconds, seconds, wait_for
 
 from ur_ros_rtde_msgs.msg import ErrorCode, IOState
 from ur_ros_rtde_msgs.srv import GetIOState, GetJointState, GetTcpPose, GetWrench

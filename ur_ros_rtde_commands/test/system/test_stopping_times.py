@@ -10,8 +10,10 @@ import threading
 
 import pytest
 from geometry_msgs.msg import Twist, Vector3
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
-from support import HOME, Client, Simulator, start_node, wait_for
+from ros_client import Client
+from support import HOME, wait_for
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
 
 from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce, Stop

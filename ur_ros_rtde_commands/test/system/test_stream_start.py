@@ -3,8 +3,9 @@
 import pytest
 from arm_state import get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped
+from programs import start_node
 from sensor_msgs.msg import JointState
-from support import FEW_PLUGINS, start_node, wait_for
+from support import FEW_PLUGINS, wait_for
 from test_streams import Publisher, joint_message
 from trajectories import TargetRecorder
 

@@ -8,10 +8,12 @@ import time
 import pytest
 from arm_state import get_joint_speed, get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from programs import Simulator, start_node
 from publisher import Publisher
 from robot_fixtures import make_ready
+from ros_client import Client
 from sensor_msgs.msg import JointState
-from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, Client, Simulator, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetRecorder
 
 from ur_ros_rtde_msgs.action import ForceMode, MoveJ, Stop

@@ -4,8 +4,10 @@ import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3, Wrench
 from plugin_prefix import environment_of_test_commands
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
-from support import HOME, TIMEOUT_FACTOR, Client, Simulator, start_node, wait_for
+from ros_client import Client
+from support import HOME, TIMEOUT_FACTOR, wait_for
 
 from ur_ros_rtde_msgs.action import DashboardCommand, DashboardQuery, ForceMode, MoveJ, SendScript, SpeedJ, Stop, Trigger
 from ur_ros_rtde_msgs.msg import ErrorCode

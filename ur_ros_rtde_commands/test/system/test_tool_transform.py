@@ -2,11 +2,12 @@
 
 import pytest
 from geometry_msgs.msg import PoseStamped
+from programs import start_node
 from rclpy.node import NodeNameNonExistentError
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
-from support import seconds, start_node, wait_for
+from support import seconds, wait_for
 from tf2_msgs.msg import TFMessage
 
 

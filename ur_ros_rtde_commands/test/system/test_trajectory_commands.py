@@ -5,9 +5,11 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import home_plus
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
+from ros_client import Client
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, Client, Simulator, start_node, wait_for
+from support import HOME, JOINTS, wait_for
 from trajectories import TargetRecorder, distance_to_line, point, timed, wave, waypoints
 
 from ur_ros_rtde_msgs.action import ExecuteParametrizedTrajectory, ExecuteTrajectory, MoveJ, Stop

@@ -3,9 +3,11 @@
 import time
 
 import pytest
+from programs import Simulator, start_node
 from robot_fixtures import make_ready
+from ros_client import Client
 from sensor_msgs.msg import JointState
-from support import FEW_PLUGINS, HOME, JOINTS, Client, Simulator, seconds, start_node, wait_for
+from support import FEW_PLUGINS, HOME, JOINTS, seconds, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 

@@ -19,9 +19,11 @@ import messages
 from cell import StatusTrackingClient
 from own_domain import Domain
 from plugin_prefix import TEST_COMMANDS, environment_of_test_commands
+from programs import Process, Simulator, start_node
 from rclpy.action import ActionClient
 from rclpy.qos import QoSProfile
-from support import HOME, Goal, Process, Simulator, start_node, wait_for
+from ros_client import Goal
+from support import HOME, wait_for
 
 from ur_ros_rtde_msgs.action import MoveJ
 from ur_ros_rtde_msgs.msg import ErrorCode

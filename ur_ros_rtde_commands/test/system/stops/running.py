@@ -10,8 +10,9 @@ import time
 import messages
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from programs import Process
 from sensor_msgs.msg import JointState
-from support import HOME, JOINTS, Process, wait_for
+from support import HOME, JOINTS, wait_for
 from unique_identifier_msgs.msg import UUID
 
 from .goal_kinds import SPEED
