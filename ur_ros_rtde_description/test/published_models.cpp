@@ -101,7 +101,7 @@ json driver_limits(const RobotModel & model)
   if (!limits) {
     throw std::runtime_error(fmt::format("{}: the trajectory library has no limits", model.name));
   }
-  return {{"position", limits->position}, {"velocity", limits->velocity}};
+  return {{"position", limits->position}, {"velocity", limits->velocity}, {"torque", limits->torque}};
 }
 
 }  // namespace

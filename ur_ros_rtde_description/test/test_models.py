@@ -104,7 +104,7 @@ def test_limits_are_those_of_driver_and_simulator(published, name):
     joints = {joint.get("name"): joint for joint in urdf(name).findall("joint")}
     for i, joint in enumerate(JOINTS):
         limit = joints[joint].find("limit")
-        assert float(limit.get("effort")) == expected["torque_max"][i]
+        assert float(limit.get("effort")) == expected["torque_max"][i] == expected["driver_limits"]["torque"][i]
         velocity = float(limit.get("velocity"))
         assert velocity == pytest.approx(expected["velocity_max"][i], abs=1e-12)
         assert velocity == pytest.approx(expected["driver_limits"]["velocity"][i], abs=1e-12)

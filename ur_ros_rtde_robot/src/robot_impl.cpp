@@ -252,6 +252,19 @@ Status Robot::Impl::may_use(const Claim & claim) const
   return {};
 }
 
+Status Robot::Impl::leaves_force_mode_alone(const Claim & claim) const
+{
+  const bool is_script = claim.resource == Resource::script;
+  if ((!is_script && !claim.excludes_force_mode) || !activities.now().contains(Activity::force_mode)) {
+    return {};
+  }
+  return failure(
+      ErrorCode::busy,
+      fmt::format(
+          "force mode is active, and {} would {}: end it first (force_mode_stop, stop)", claim.owner,
+          is_script ? "end it and go on without compliance" : "change the force with which the arm presses"));
+}
+
 /// For a moment. False after `deadline`, and when the state of the robot keeps the program from running.
 bool Robot::Impl::wait_for_control_program(Permit::Clock::time_point deadline) const
 {
@@ -268,6 +281,9 @@ Expected<Generation> Robot::Impl::admit(const Claim & claim) const
   const Generation now = generation();  // before the checks: a change afterwards ends the lease
   if (Status usable = may_use(claim); !usable) {
     return tl::unexpected(usable.error());
+  }
+  if (Status possible = leaves_force_mode_alone(claim); !possible) {
+    return tl::unexpected(possible.error());
   }
   if (moves_arm(claim.resource) && stopper.is_stopping()) {
     return failure(ErrorCode::busy, "the arm is being stopped: wait until it is at rest");

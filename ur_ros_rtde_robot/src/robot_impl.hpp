@@ -39,6 +39,8 @@ class Robot::Impl {
   Status ready_to_move() const;
   Generation generation() const;
   Status may_use(const Claim & claim) const;
+  /// See Claim::excludes_force_mode.
+  Status leaves_force_mode_alone(const Claim & claim) const;
   /// For a claim that is granted now.
   Expected<Generation> admit(const Claim & claim) const;
   bool wait_for_control_program(Permit::Clock::time_point deadline) const;

@@ -48,7 +48,11 @@ Expected<Lease> Robot::acquire_preempting(const Claim & claim, const Waiting & w
 
 Status Robot::may_use(const Claim & claim) const
 {
-  return impl_->may_use(claim);
+  if (Status usable = impl_->may_use(claim); !usable) {
+    return usable;
+  }
+  const bool preempts_mode = claim.resource == Resource::script && holder(Resource::mode);
+  return preempts_mode ? Status() : impl_->leaves_force_mode_alone(claim);
 }
 
 std::optional<Claim> Robot::holder(Resource resource) const

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <geometry_msgs/msg/point.hpp>
 #include <geometry_msgs/msg/pose.hpp>
 #include <geometry_msgs/msg/twist.hpp>
 #include <geometry_msgs/msg/vector3.hpp>
@@ -42,6 +43,8 @@ class Check {
   Check & above_zero(std::string_view field, double value, double high, std::string_view unit = "");
   /// Finite position within reach, and a quaternion that can be normalized.
   Check & pose(std::string_view field, const geometry_msgs::msg::Pose & pose);
+  /// Finite and within reach.
+  Check & position(std::string_view field, const geometry_msgs::msg::Point & position);
   /// As pose(), for a pose that the arm need not reach: a task frame, a TCP.
   Check & frame(std::string_view field, const geometry_msgs::msg::Pose & pose);
   /// Each component is finite and its magnitude is at most `limit`.
@@ -54,6 +57,8 @@ class Check {
                      std::string_view unit);
   /// As each_joint(), with the velocity limits of the arm and at most 3.14 rad/s; not all zero.
   Check & joint_velocities(std::string_view field, const std::vector<double> & values);
+  /// Six finite values within the torque limits of the arm, Nm.
+  Check & joint_torques(std::string_view field, const std::vector<double> & values);
   /// One line of text without control characters, 1 to `longest` bytes.
   Check & line(std::string_view field, std::string_view text, std::size_t longest);
   Check & that(bool holds, std::string message, ErrorCode code = ErrorCode::invalid_goal);

@@ -83,14 +83,19 @@ class Run {
   /// Waits until the asynchronous motion that the last call through control() has started has ended and the
   /// arm is at rest. Fails if the control program did not start it, or after `timeout`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
-  /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere. Joint
-  /// positions in rad; a UR pose: position (m) and rotation vector (rad).
+  /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere, and
+  /// (timeout) if the arm does not come closer to it for 10 min, without the time in which the speed is
+  /// scaled to zero. Joint positions in rad; a UR pose: position (m) and rotation vector (rad). In force
+  /// mode, which moves the arm as well, the end of the motion is sufficient, at rest or not, here and below.
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);
   /// Waits until the arm is at rest at the target, with progress. For motions whose end the controller does
-  /// not report: servo control, scripts. Fails (not_reached) when the arm has been at rest elsewhere for 2 s.
+  /// not report: servo control, scripts. Fails (not_reached) when the arm has been at rest elsewhere, and has
+  /// not come closer, for 2 s.
   [[nodiscard]] Outcome until_at_rest_at_joints(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_at_rest_at_pose(const std::vector<double> & pose);
+  /// The same for the position of a pose alone.
+  [[nodiscard]] Outcome until_at_rest_at_position(const std::vector<double> & pose);
   /// The last asynchronous motion has ended, or has not started within 1 s.
   bool motion_ended() const;
   /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.
@@ -168,9 +173,10 @@ class Run {
   {
     return std::exchange(control_timeout_, timeout);
   }
-  using Distance = std::function<double(const Sample &)>;
-  Outcome until_reached(const Distance & distance, double tolerance, const char * unit);
-  Outcome until_at(const Distance & distance, double tolerance, const char * unit);
+  struct Target;
+  Outcome until_reached(const Target & target, double tolerance);
+  Outcome until_at(const Target & target, double tolerance);
+  bool is_compliant() const;
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();

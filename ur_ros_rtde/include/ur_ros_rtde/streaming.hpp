@@ -55,12 +55,16 @@ class TargetFollower {
 
 /// For joint positions and for poses. Moves along straight lines from target to target and arrives one and a
 /// half periods after each, so that the motion is steady at low rates and does not halt for a late target.
-/// Joint velocities stay within the limits of the arm, the TCP within 3 m/s and 3.14 rad/s. Until the arm has
-/// reached the targets for the first time, the default speeds apply (default_speeds.hpp).
+/// Joint velocities stay within the limits of the arm (for poses, see check_joint_velocities()), the TCP
+/// within 3 m/s and 3.14 rad/s. Until the arm has reached the targets for the first time, the default speeds
+/// apply (default_speeds.hpp).
 std::unique_ptr<TargetFollower> follow_joints(const StreamOptions & options);
 std::unique_ptr<TargetFollower> follow_poses(const StreamOptions & options);
 /// For twists. Applies the velocity of the newest target; in the tool frame, it turns with the tool.
 std::unique_ptr<TargetFollower> follow_twists(const StreamOptions & options);
+/// For targets in Cartesian space, the controller computes the joint velocities, which become large close to
+/// a singularity. Fails (safety_violation) once one exceeds its limit: the stop begins in the same cycle.
+Status check_joint_velocities(const Sample & sample, const ArmLimits & limits);
 
 /// The smoothed time between targets.
 class TargetPeriod {

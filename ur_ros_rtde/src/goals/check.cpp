@@ -29,6 +29,13 @@ Expected<Vector3> rotation_vector_of(const geometry_msgs::msg::Pose & pose)
   return rotation_vector(Quaternion{q.x, q.y, q.z, q.w});
 }
 
+/// get_inverse_kin_has_solution exists from PolyScope 5.10 and 3.15 on (UR, Script Manual).
+bool tells_solvability(const Robot & robot)
+{
+  const auto version = robot.version();
+  return !version || (version->cb3() ? version->minor >= 15 : version->major > 5 || version->minor >= 10);
+}
+
 Status check_reachable(Robot & robot, const std::string & field, const std::vector<double> & target)
 {
   const std::string where =
@@ -36,6 +43,12 @@ Status check_reachable(Robot & robot, const std::string & field, const std::vect
   try {
     if (robot.control_for_queries()->isPoseWithinSafetyLimits(target)) {
       return {};
+    }
+    if (!tells_solvability(robot)) {
+      return failure(ErrorCode::unreachable,
+                     fmt::format("{} cannot be reached in this orientation, or is outside the robot's safety "
+                                 "limits",
+                                 where));
     }
     if (robot.control_for_queries()->getInverseKinematicsHasSolution(target)) {
       return failure(ErrorCode::safety_violation,
@@ -144,6 +157,11 @@ Check & Check::joint_velocities(std::string_view field, const std::vector<double
             fmt::format("{} is zero: nothing would move", field));
 }
 
+Check & Check::joint_torques(std::string_view field, const std::vector<double> & values)
+{
+  return each_joint(field, values, limits().torque, "Nm");
+}
+
 Check & Check::in_range(std::string_view field, double value, double low, double high, std::string_view unit)
 {
   if (ok() && !(std::isfinite(value) && value >= low && value <= high)) {
@@ -164,23 +182,23 @@ Check & Check::above_zero(std::string_view field, double value, double high, std
 
 Check & Check::pose(std::string_view field, const geometry_msgs::msg::Pose & pose)
 {
-  if (!ok()) {
-    return *this;
-  }
-  const double reach = limits().reach;
-  const auto & p = pose.position;
-  const double distance = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-  if (!std::isfinite(distance)) {
-    fail(ErrorCode::invalid_goal,
-         fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field, p.x, p.y, p.z));
-  } else if (const auto rotation = rotation_vector_of(pose); !rotation) {
+  position(field, pose.position);
+  if (const auto rotation = rotation_vector_of(pose); ok() && !rotation) {
     fail(ErrorCode::invalid_goal, fmt::format("{}.orientation: {}", field, rotation.error().message));
-  } else if (distance > reach + 1.0) {  // a tool may add a metre
-    fail(ErrorCode::unreachable,
-         fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool",
-                     field, distance, reach));
   }
   return *this;
+}
+
+Check & Check::position(std::string_view field, const geometry_msgs::msg::Point & position)
+{
+  const double reach = limits().reach;
+  const double distance = std::hypot(position.x, position.y, position.z);
+  that(std::isfinite(distance), fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field,
+                                            position.x, position.y, position.z));
+  return that(distance <= reach + 1.0,  // a tool may add a metre
+              fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool",
+                          field, distance, reach),
+              ErrorCode::unreachable);
 }
 
 Check & Check::vector(std::string_view field, const geometry_msgs::msg::Vector3 & vector, double limit,

@@ -69,6 +69,7 @@ Claim CommandGoal::claim()
   result.owner = action();
   result.id = id().short_string();
   result.switches_hand_guiding = command_->traits.switches_hand_guiding;
+  result.excludes_force_mode = command_->traits.excludes_force_mode;
   result.blocks_queries = command_->traits.blocks_queries;
   result.preempts_only_own = !command_->traits.preempts_all && !command_->host.options().preempt_when_busy;
   result.preempt = [weak = weak_from_this()](const Error & why) {

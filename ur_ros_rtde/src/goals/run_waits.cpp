@@ -21,19 +21,12 @@ constexpr milliseconds max_sample_age{200};
 constexpr double joint_tolerance = 0.005;     // rad
 constexpr double position_tolerance = 0.002;  // m
 constexpr double rotation_weight = 0.2;       // m/rad: 0.01 rad counts as 2 mm
-constexpr std::chrono::minutes max_motion_duration{10};
+constexpr std::chrono::hours max_motion_duration{24};
+constexpr std::chrono::minutes longest_idle_motion{10};
 /// For motions whose end the controller does not report: they end where the arm comes to rest.
 constexpr double servo_joint_tolerance = 0.01;      // rad
 constexpr double servo_position_tolerance = 0.004;  // m
 constexpr std::chrono::seconds settling_timeout{2};
-
-/// m, with the rotation weighted by rotation_weight.
-double pose_distance(const Vector6 & a, const Vector6 & b)
-{
-  const Vector6 difference = pose_trans(pose_inverse(a), b);
-  return std::hypot(difference[0], difference[1], difference[2]) +
-         rotation_weight * std::hypot(difference[3], difference[4], difference[5]);
-}
 
 Vector6 to_array(const std::vector<double> & values)
 {
@@ -53,25 +46,86 @@ Clock::time_point deadline_in(std::chrono::nanoseconds timeout)
   return left < Clock::time_point::max() - now ? now + left : Clock::time_point::max();
 }
 
-/// rad, largest difference of all joints.
-std::function<double(const Sample &)> distance_to_joints(const std::vector<double> & positions)
+/// While the arm moves more slowly than this, it counts as at rest.
+bool is_paused(const Sample & sample)
 {
-  return [target = to_array(positions)](const Sample & sample) {
+  constexpr double least_rate = 0.01;
+  return sample.requested_rate() < least_rate;
+}
+
+/// Measures how long the arm has not come closer to its target.
+class Approach {
+ public:
+  explicit Approach(double distance) : nearest_(distance) {}
+  void update(double distance, bool may_be_idle)
+  {
+    constexpr double least_step = 1e-4;  // rad, m
+    const bool comes_closer = distance < nearest_ - least_step;
+    nearest_ = comes_closer ? distance : nearest_;
+    last_ = comes_closer || may_be_idle ? Clock::now() : last_;
+  }
+  Clock::duration idle() const { return Clock::now() - last_; }
+
+ private:
+  double nearest_;
+  Clock::time_point last_ = Clock::now();
+};
+}  // namespace
+
+/// Where a motion has to end.
+struct Run::Target {
+  std::function<double(const Sample &)> distance;          ///< rad or m
+  std::function<std::string(const Sample &)> description;  ///< of the distance
+
+  static Target joints(const std::vector<double> & positions);
+  static Target pose(const std::vector<double> & pose);
+  static Target position(const std::vector<double> & pose);
+  Outcome missed(const Sample & sample) const
+  {
+    return Outcome::failure(ErrorCode::not_reached,
+                            fmt::format("the arm stopped {} before the target", description(sample)));
+  }
+};
+
+/// The largest difference of all joints.
+Run::Target Run::Target::joints(const std::vector<double> & positions)
+{
+  const auto distance = [target = to_array(positions)](const Sample & sample) {
     double largest = 0.0;
     for (std::size_t i = 0; i < target.size(); ++i) {
       largest = std::max(largest, std::abs(target[i] - sample.actual_q[i]));
     }
     return largest;
   };
+  return {distance,
+          [distance](const Sample & sample) { return fmt::format("{:.4f} rad", distance(sample)); }};
 }
 
-std::function<double(const Sample &)> distance_to_pose(const std::vector<double> & pose)
+/// The distance of the positions, with the rotation weighted by rotation_weight.
+Run::Target Run::Target::pose(const std::vector<double> & pose)
 {
-  return [target = to_array(pose)](const Sample & sample) {
-    return pose_distance(sample.actual_tcp_pose, target);
+  const auto offset = [target = to_array(pose)](const Sample & sample) {
+    const Vector6 d = pose_trans(pose_inverse(sample.actual_tcp_pose), target);
+    return std::pair{std::hypot(d[0], d[1], d[2]), std::hypot(d[3], d[4], d[5])};
   };
+  return {[offset](const Sample & sample) {
+            const auto [distance, angle] = offset(sample);
+            return distance + rotation_weight * angle;
+          },
+          [offset](const Sample & sample) {
+            const auto [distance, angle] = offset(sample);
+            return fmt::format("{:.4f} m and {:.4f} rad", distance, angle);
+          }};
 }
-}  // namespace
+
+Run::Target Run::Target::position(const std::vector<double> & pose)
+{
+  const auto distance = [target = to_array(pose)](const Sample & sample) {
+    const Vector6 & here = sample.actual_tcp_pose;
+    return std::hypot(here[0] - target[0], here[1] - target[1], here[2] - target[2]);
+  };
+  return {distance, [distance](const Sample & sample) { return fmt::format("{:.4f} m", distance(sample)); }};
+}
 
 std::optional<StopReason> Run::wait(const std::function<bool()> & condition, Clock::time_point deadline)
 {
@@ -154,15 +208,26 @@ std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds timeout
   return why;
 }
 
+/// Where force mode moves the arm, a motion ends without a standstill, and not at its target.
+bool Run::is_compliant() const
+{
+  return robot().activities().contains(Activity::force_mode);
+}
+
 bool Run::motion_ended() const
 {
   const MotionProgress motion = robot().motion_progress(mark_);
-  return motion.finished() || (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
+  const bool has_ended = motion.started && !motion.running && !motion.program_ended;
+  return (has_ended && (motion.at_rest || is_compliant())) ||
+         (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
 }
 
 Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)
 {
   if (auto why = until([this] { return motion_ended(); }, timeout)) {
+    if (why->code == ErrorCode::timeout) {
+      why->message = "the motion has not ended: " + why->message;
+    }
     return *why;
   }
   if (!robot().motion_progress(mark_).started) {
@@ -172,71 +237,82 @@ Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)
   return Outcome::success();
 }
 
-Outcome Run::until_reached(const Distance & distance, double tolerance, const char * unit)
+Outcome Run::until_reached(const Target & target, double tolerance)
 {
-  const double initial = distance(state());
+  const double initial = target.distance(state());
+  Approach approach(initial);
   const auto update = [&] {
-    const double left = distance(state());
+    const double left = target.distance(state());
     progress(initial > tolerance ? std::clamp(1.0 - left / initial, 0.0, 1.0) : 1.0);
-    return motion_ended();
+    approach.update(left, is_paused(state()));
+    return motion_ended() || approach.idle() > longest_idle_motion;
   };
   if (auto why = until(update, max_motion_duration)) {
     return *why;
   }
-  const double left = distance(state());
-  if (left <= tolerance) {
-    progress(1.0);
-    return Outcome::success();
+  if (!motion_ended()) {
+    return Outcome::failure(
+        ErrorCode::timeout,
+        fmt::format("the arm has not come closer to the target for {} min, {} are left: see the log on the "
+                    "teach pendant",
+                    longest_idle_motion.count(), target.description(state())));
   }
-  if (Outcome ended = until_motion_ends(); !ended) {
+  if (Outcome ended = until_motion_ends(); !ended && target.distance(state()) > tolerance) {
     return ended;
   }
-  return Outcome::failure(ErrorCode::not_reached,
-                          fmt::format("the arm stopped {:.4f} {} before the target", left, unit));
+  if (target.distance(state()) > tolerance && !is_compliant()) {
+    return target.missed(state());
+  }
+  progress(1.0);
+  return Outcome::success();
 }
 
 Outcome Run::until_joints_reached(const std::vector<double> & positions)
 {
-  return until_reached(distance_to_joints(positions), joint_tolerance, "rad");
+  return until_reached(Target::joints(positions), joint_tolerance);
 }
 
 Outcome Run::until_pose_reached(const std::vector<double> & pose)
 {
-  return until_reached(distance_to_pose(pose), position_tolerance, "m");
+  return until_reached(Target::pose(pose), position_tolerance);
 }
 
-Outcome Run::until_at(const Distance & distance, double tolerance, const char * unit)
+Outcome Run::until_at(const Target & target, double tolerance)
 {
-  const double initial = std::max(distance(state()), tolerance);
-  auto last_moved = Clock::now();
+  const double initial = std::max(target.distance(state()), tolerance);
+  Approach approach(initial);
   bool reached = false;
   const auto update = [&] {
-    const double left = distance(state());
+    const double left = target.distance(state());
     progress(std::max(progress(), std::clamp(1.0 - left / initial, 0.0, 1.0)));
     const bool at_rest = robot().motion_progress(mark_).at_rest;
-    last_moved = at_rest ? last_moved : Clock::now();
+    approach.update(left, !at_rest || is_paused(state()));
     reached = at_rest && left <= tolerance;
-    return reached || Clock::now() - last_moved > settling_timeout;
+    return reached || approach.idle() > settling_timeout || (is_compliant() && left <= tolerance);
   };
   if (auto why = until(update, max_motion_duration)) {
     return *why;
   }
-  if (reached) {
-    progress(1.0);
-    return Outcome::success();
+  if (!reached && !is_compliant()) {
+    return target.missed(state());
   }
-  return Outcome::failure(ErrorCode::not_reached, fmt::format("the arm stopped {:.4f} {} before the target",
-                                                              distance(state()), unit));
+  progress(1.0);
+  return Outcome::success();
 }
 
 Outcome Run::until_at_rest_at_joints(const std::vector<double> & positions)
 {
-  return until_at(distance_to_joints(positions), servo_joint_tolerance, "rad");
+  return until_at(Target::joints(positions), servo_joint_tolerance);
 }
 
 Outcome Run::until_at_rest_at_pose(const std::vector<double> & pose)
 {
-  return until_at(distance_to_pose(pose), servo_position_tolerance, "m");
+  return until_at(Target::pose(pose), servo_position_tolerance);
+}
+
+Outcome Run::until_at_rest_at_position(const std::vector<double> & pose)
+{
+  return until_at(Target::position(pose), servo_position_tolerance);
 }
 
 }  // namespace ur_ros_rtde

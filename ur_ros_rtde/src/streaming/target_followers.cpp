@@ -89,21 +89,6 @@ class LineDuration {
   bool caught_up_ = false;
 };
 
-/// For targets in Cartesian space, the controller computes the joint velocities. They become large close to a
-/// singularity.
-Status check_joint_velocities(const Sample & sample, const ArmLimits & limits)
-{
-  for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
-    if (!(std::abs(sample.target_qd[i]) <= limits.velocity[i])) {
-      return failure(ErrorCode::safety_violation,
-                     fmt::format("{} would move at {:.2f} rad/s, its limit is {:.2f} rad/s: the arm is close "
-                                 "to a singularity, or the target is too fast",
-                                 joint_names()[i], std::abs(sample.target_qd[i]), limits.velocity[i]));
-    }
-  }
-  return {};
-}
-
 class JointFollower : public TargetFollower {
  public:
   explicit JointFollower(const StreamOptions & options) : options_(options) {}
@@ -295,6 +280,19 @@ class TwistFollower : public TargetFollower {
   StreamTarget target_{};
 };
 }  // namespace
+
+Status check_joint_velocities(const Sample & sample, const ArmLimits & limits)
+{
+  for (std::size_t i = 0; i < limits.velocity.size(); ++i) {
+    if (!(std::abs(sample.target_qd[i]) <= limits.velocity[i])) {
+      return failure(ErrorCode::safety_violation,
+                     fmt::format("{} would move at {:.2f} rad/s, its limit is {:.2f} rad/s: the arm is close "
+                                 "to a singularity, or the target is too fast",
+                                 joint_names()[i], std::abs(sample.target_qd[i]), limits.velocity[i]));
+    }
+  }
+  return {};
+}
 
 std::unique_ptr<TargetFollower> follow_joints(const StreamOptions & options)
 {

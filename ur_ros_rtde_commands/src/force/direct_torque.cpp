@@ -10,9 +10,6 @@
 
 namespace ur_ros_rtde {
 namespace {
-/// Nm, of the largest arm. The controller enforces the limits of its own arm.
-constexpr Vector6 max_torques{738.0, 738.0, 433.0, 107.0, 107.0, 107.0};
-
 double max_joint_speed(const Sample & sample)
 {
   double fastest = 0.0;
@@ -49,7 +46,7 @@ class DirectTorque : public Command<ur_ros_rtde_msgs::action::DirectTorque> {
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.each_joint("joint_torques", goal.joint_torques, max_torques, "Nm")
+    check.joint_torques("joint_torques", goal.joint_torques)
         .in_range("duration", goal.duration, 0.01, 60.0, "s")
         .above_zero("max_joint_speed", goal.max_joint_speed, 3.14, "rad/s");
     check_scale(check, "viscous_scale", goal.viscous_scale);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <ur_ros_rtde_msgs/action/trigger.hpp>
 
 #include "force/compliance.hpp"
@@ -7,45 +9,61 @@ namespace ur_ros_rtde {
 /// Ends a mode that a previous goal has activated, and waits for standstill.
 class EndModeCommand : public Command<ur_ros_rtde_msgs::action::Trigger> {
  public:
-  EndModeCommand(Mode::EndFunction end, std::string mode, bool is_hand_guiding)
-      : end_(end), mode_(std::move(mode)), is_hand_guiding_(is_hand_guiding)
+  EndModeCommand(Mode::EndFunction end, Activity activity, std::string mode)
+      : end_(end), activity_(activity), mode_(std::move(mode))
   {
   }
 
  private:
   CommandTraits traits() const override
   {
-    return {.leaves_mode_active = true, .switches_hand_guiding = is_hand_guiding_};
+    return {.leaves_mode_active = true, .switches_hand_guiding = hand_guiding.contains(activity_)};
   }
   Outcome run(const Goal &, Run & run) override
   {
+    if (const auto other = (run.robot().activities() & hand_guiding).without(activity_); !other.empty()) {
+      return Outcome::failure(ErrorCode::busy,
+                              fmt::format("the arm is not in {}: {}", mode_,
+                                          other.contains(Activity::freedrive)
+                                              ? "freedrive is active, which freedrive_stop ends"
+                                              : "teach mode is active, which end_teach_mode ends"));
+    }
     Mode(run, end_, mode_).end();
     const auto stop_reason = run.until_standstill();
     return stop_reason ? Outcome(*stop_reason) : Outcome::success();
   }
 
   const Mode::EndFunction end_;
+  const Activity activity_;
   const std::string mode_;
-  const bool is_hand_guiding_;
 };
 
 class EndTeachMode : public EndModeCommand {
  public:
-  EndTeachMode() : EndModeCommand(&ur_rtde::RTDEControlInterface::endTeachMode, "teach mode", true) {}
+  EndTeachMode()
+      : EndModeCommand(&ur_rtde::RTDEControlInterface::endTeachMode, Activity::teach_mode, "teach mode")
+  {
+  }
 };
 
 UR_ROS_RTDE_EXPORT(EndTeachMode, "end_teach_mode")
 
 class FreedriveStop : public EndModeCommand {
  public:
-  FreedriveStop() : EndModeCommand(&ur_rtde::RTDEControlInterface::endFreedriveMode, "freedrive", true) {}
+  FreedriveStop()
+      : EndModeCommand(&ur_rtde::RTDEControlInterface::endFreedriveMode, Activity::freedrive, "freedrive")
+  {
+  }
 };
 
 UR_ROS_RTDE_EXPORT(FreedriveStop, "freedrive_stop")
 
 class ForceModeStop : public EndModeCommand {
  public:
-  ForceModeStop() : EndModeCommand(&ur_rtde::RTDEControlInterface::forceModeStop, "force mode", false) {}
+  ForceModeStop()
+      : EndModeCommand(&ur_rtde::RTDEControlInterface::forceModeStop, Activity::force_mode, "force mode")
+  {
+  }
 };
 
 UR_ROS_RTDE_EXPORT(ForceModeStop, "force_mode_stop")

@@ -168,7 +168,8 @@ void FollowJointTrajectory::check(const Goal & goal, Check & check) const
     return;
   }
   check_time(goal, check);
-  check_timed_trajectory(check, goal.trajectory, widest_limits(host_->limits()), start_tolerance);
+  check_timed_trajectory(check, goal.trajectory, widest_limits(host_->limits()), start_tolerance,
+                         host_->options().tf_prefix);
 }
 
 Expected<PlannedTrajectory> FollowJointTrajectory::plan(const Goal & goal, const Joints & start) const
@@ -248,7 +249,7 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
     const Sample sample = run.state();
     held = tolerances.check(end - Eigen::Map<const Joints>(sample.actual_q.data()),
                             -Eigen::Map<const Joints>(sample.actual_qd.data()));
-    return static_cast<bool>(held);
+    return held && !run.robot().is_moving();
   };
   if (auto stop_reason =
           run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {

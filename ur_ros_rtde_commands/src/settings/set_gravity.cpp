@@ -5,6 +5,8 @@
 namespace ur_ros_rtde {
 
 class SetGravity : public Command<ur_ros_rtde_msgs::action::SetGravity> {
+  CommandTraits traits() const override { return {.excludes_force_mode = true}; }
+
   void check(const Goal & goal, Check & check) const override
   {
     const auto & d = goal.direction;

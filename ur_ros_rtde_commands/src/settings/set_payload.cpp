@@ -5,6 +5,8 @@
 namespace ur_ros_rtde {
 
 class SetPayload : public Command<ur_ros_rtde_msgs::action::SetPayload> {
+  CommandTraits traits() const override { return {.excludes_force_mode = true}; }
+
   void check(const Goal & goal, Check & check) const override
   {
     check_payload(check, goal.mass, goal.center_of_gravity);

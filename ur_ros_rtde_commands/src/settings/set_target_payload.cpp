@@ -22,6 +22,8 @@ bool has_inertia(const Sample & sample, const std::array<double, 6> & inertia)
 }  // namespace
 
 class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPayload> {
+  CommandTraits traits() const override { return {.excludes_force_mode = true}; }
+
   void check(const Goal & goal, Check & check) const override
   {
     check_payload(check, goal.mass, goal.center_of_gravity);

@@ -15,6 +15,7 @@ using trajectory::Trajectory;
 
 constexpr std::chrono::minutes planning_timeout{2};
 constexpr double same_position_tolerance = 1e-6;  // rad
+constexpr double moved_tolerance = 0.01;          // rad; the first setpoint may be this far from the arm
 
 /// Plans in a separate thread, so that feedback is published and the goal can be stopped in the meantime.
 Expected<PlannedTrajectory> plan_in_background(Run & run, const Execution & execution, const Joints & start)
@@ -48,6 +49,19 @@ Expected<std::optional<Trajectory>> plan_approach(const Joints & start, const Pl
   return trajectory::plan_path(std::vector<Joints>{start, first},
                                trajectory::default_speed_limits(plan.limits), options)
       .map([](Trajectory approach) { return std::optional(std::move(approach)); });
+}
+
+/// Force mode may have moved the arm since the motion was planned.
+Status check_still_at(const Joints & start, const Sample & sample)
+{
+  const double distance = (commanded_joints(sample) - start).abs().maxCoeff();
+  return distance <= moved_tolerance
+             ? Status()
+             : failure(
+                   ErrorCode::not_reached,
+                   fmt::format("the arm has moved by {:.4f} rad since this motion was planned, at most {} "
+                               "rad are allowed: end force mode, or send the goal again",
+                               distance, moved_tolerance));
 }
 
 }  // namespace
@@ -87,6 +101,9 @@ ExecutionResult execute(Run & run, const Execution & execution)
   execution.on_planned(plan->trajectory);
   if (Outcome begins = execution.wait_for_start(); !begins) {
     return {begins, 0.0};
+  }
+  if (Status unmoved = check_still_at(start, run.state()); !unmoved) {
+    return {unmoved.error(), 0.0};
   }
   double tracking_error = 0.0;  // of the approach
   if (*approach) {

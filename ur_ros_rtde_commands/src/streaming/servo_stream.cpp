@@ -23,12 +23,6 @@ constexpr std::chrono::milliseconds stop_planning_timeout{4};
 constexpr std::chrono::seconds package_timeout{1};
 constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
 
-/// The smaller of both fractions, because only some controllers include the slider in speed_scaling.
-double requested_rate(const Sample & sample)
-{
-  return std::clamp(std::min(sample.speed_scaling, sample.target_speed_fraction), 0.0, 1.0);
-}
-
 /// The motion at a rate of the time axis.
 JointMotion scaled(const trajectory::Point & point, const TimeScaling & time_scaling)
 {
@@ -66,18 +60,18 @@ Outcome ServoStream::execute(const Trajectory & plan, const Limits & limits)
   state_.sample = run_.state();
   const Joints end = plan.sample(plan.duration()).position;
   std::copy(end.begin(), end.end(), target_.begin());
-  TimeScaling time_scaling = make_time_scaling(requested_rate(state_.sample));
+  TimeScaling time_scaling = make_time_scaling(state_.sample.requested_rate());
   // The control program extrapolates from the last two setpoints on its way, so both are the end of the plan.
   for (bool at_end = time_scaling.time() >= plan.duration(); !at_end;) {
     at_end = clock_.is_at_end(time_scaling.time() - plan.duration());
     const double before = state_.sample.controller_time;
     const auto stop_reason = run_.next(state_.sample);
     add_elapsed(before);
+    time_scaling.advance(elapsed_, state_.sample.requested_rate(), plan.sample(time_scaling.time()), limits);
     if (stop_reason) {
       brake(braking, plan, limits, time_scaling);
       return *stop_reason;
     }
-    time_scaling.advance(elapsed_, requested_rate(state_.sample), plan.sample(time_scaling.time()), limits);
     if (Status sent = send(plan, limits, time_scaling); !sent) {
       return sent;
     }

@@ -1,14 +1,36 @@
 #include "streaming/timed_trajectory.hpp"
 
+#include <fmt/format.h>
+
 #include "streaming/goal_fields.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+
+/// The names are those of an arm: timed_waypoints().
+void check_prefix(Check & check, const std::vector<std::string> & names, const std::string & own)
+{
+  const std::string & any_joint = joint_names()[0];
+  for (const std::string & name : names) {
+    if (name.ends_with(any_joint)) {
+      const std::string prefix = name.substr(0, name.size() - any_joint.size());
+      check.that(prefix.empty() || prefix == own,
+                 fmt::format("joint_names have the prefix \"{}\", but those of this arm have {}: send the "
+                             "goal to the other arm, or set tf_prefix",
+                             prefix, own.empty() ? std::string("none") : fmt::format("\"{}\"", own)));
+    }
+  }
+}
+
+}  // namespace
 
 void check_timed_trajectory(Check & check, const trajectory_msgs::msg::JointTrajectory & message,
-                            const trajectory::Limits & limits, double start_tolerance)
+                            const trajectory::Limits & limits, double start_tolerance,
+                            const std::string & prefix)
 {
   auto waypoints = timed_waypoints(message);
   require(check, waypoints.map([](const auto &) {}));
+  check_prefix(check, message.joint_names, prefix);
   if (!check.ok()) {
     return;
   }

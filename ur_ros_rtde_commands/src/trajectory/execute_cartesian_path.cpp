@@ -53,6 +53,7 @@ class ExecuteCartesianPath : public TrajectoryCommand<ur_ros_rtde_msgs::action::
     for (std::size_t i = 0; i < goal.poses.size() && check.ok(); ++i) {
       check.pose(fmt::format("poses[{}]", i), goal.poses[i]);
     }
+    check.polyscope(0, 6);  // tells the active TCP
     if (check.ok()) {
       check.reachable(fmt::format("poses[{}]", goal.poses.size() - 1), goal.poses.back());
     }

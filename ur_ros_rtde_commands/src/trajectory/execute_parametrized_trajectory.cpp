@@ -18,7 +18,7 @@ class ExecuteParametrizedTrajectory
                           goal.trajectory.points.size(), trajectory::max_timed_waypoints));
     if (check.ok()) {
       check_timed_trajectory(check, goal.trajectory, goal_limits(goal, trajectory::make_limits(arm())),
-                             goal.start_tolerance);
+                             goal.start_tolerance, host().options().tf_prefix);
     }
   }
 

@@ -54,15 +54,29 @@ def test_executes_a_plan_with_feedback(robot):
     assert abs(feedback.error.positions[0]) < 0.1 and feedback.desired.velocities[0] > 0.1
 
 
+def test_ends_where_the_arm_has_come_to_rest_within_a_wide_tolerance(robot, simulator):
+    goal = send(robot, *planned_points(home_plus(0.4)), goal_tolerance=[tolerance(joint, 0.3) for joint in JOINTS])
+    status, result = goal.wait_for_result(20.0)
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
+    assert simulator.state()["actual"]["position"][0] == pytest.approx(HOME[0] + 0.4, abs=0.002)
+
+
 def test_accepts_joints_in_any_order(robot):
     order = (3, 0, 5, 1, 4, 2)
     target = home_plus(0.1, 0.05, -0.1, 0.2, 0.0, 0.3)
-    names = ["left_" + JOINTS[i] for i in order]
+    names = [JOINTS[i] for i in order]
     goal = send(robot, point(1.5, [target[i] for i in order], [0.0] * 6), names=names)
     status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
     last = goal.feedback[-1]
     assert last.joint_names == names and last.actual.positions == pytest.approx([target[i] for i in order], abs=0.1)
+
+
+def test_a_trajectory_of_another_arm_is_rejected(robot):
+    goal = send(robot, point(1.5, home_plus(0.1), [0.0] * 6), names=["left_" + joint for joint in JOINTS])
+    assert not goal.accepted
+    message = robot.rejection(goal).message
+    assert '"left_"' in message and "tf_prefix" in message, message
 
 
 def test_a_new_goal_preempts_the_running_one(robot, simulator):

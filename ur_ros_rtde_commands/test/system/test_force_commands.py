@@ -5,9 +5,11 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from arm_state import get_joint_state, get_tcp_pose, home_plus, is_at_rest, wait_until_moving
-from geometry_msgs.msg import Pose, Twist, Vector3, Wrench
+from control_msgs.action import FollowJointTrajectory
+from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
 from sensor_msgs.msg import JointState
 from support import JOINTS, wait_for
+from trajectories import point, timed
 
 from ur_ros_rtde_msgs.action import (
     DirectTorque,
@@ -19,8 +21,15 @@ from ur_ros_rtde_msgs.action import (
     GetPose,
     MoveJ,
     MoveL,
+    MoveP,
+    SendScript,
+    ServoL,
     SetExternalForceTorque,
     SetForceModeParameter,
+    SetGravity,
+    SetPayload,
+    SetTargetPayload,
+    SetTcp,
     SpeedL,
     TeachMode,
     Trigger,
@@ -106,6 +115,72 @@ def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simula
     assert not simulator.state()["force_mode"] and is_at_rest(robot)
 
 
+@pytest.mark.parametrize("force", [30.0, 2.0])
+def test_a_motion_in_force_mode_ends_with_its_path(robot, simulator, force):
+    """A surface keeps the arm from its target, or nothing keeps it from drifting."""
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    target = get_tcp_pose(robot)
+    if force > 10.0:
+        simulator.control("place_surface", z=target.position.z - 0.005, stiffness=20000.0)
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(force), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    wait_for(lambda: get_tcp_pose(robot).position.z < target.position.z - 0.004, 10.0, "the arm to follow the force")
+    target.position.y += 0.02
+    robot.send(MoveL, "move_l", pose=target, speed=0.05).succeeded(10.0)
+    assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.003)
+    assert get_tcp_pose(robot).position.z < target.position.z - 0.003
+    assert simulator.state()["force_mode"], "a successful motion leaves force mode active"
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    assert not simulator.state()["force_mode"] and is_at_rest(robot)
+
+
+CHANGES_THE_FORCE = {
+    "set_payload": (SetPayload, {"mass": 1.0}),
+    "set_target_payload": (SetTargetPayload, {"mass": 1.0}),
+    "set_tcp": (SetTcp, {"pose": Pose(position=Point(z=0.1))}),
+    "set_gravity": (SetGravity, {"direction": Vector3(z=9.82)}),
+    "zero_ft_sensor": (ZeroFtSensor, {}),
+    "enable_external_ft_sensor": (EnableExternalFtSensor, {"enable": True}),
+    "ft_rtde_input_enable": (EnableExternalFtSensor, {"enable": True}),
+}
+
+
+def test_what_would_change_the_force_or_end_force_mode_is_rejected_during_it(robot, simulator):
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    scripts = {"move_p": (MoveP, {"poses": [get_tcp_pose(robot)]}), "send_script": (SendScript, {"script": "sleep(0.1)"})}
+    for name, (action, fields) in {**CHANGES_THE_FORCE, **scripts}.items():
+        goal = robot.send(action, name, **fields)
+        assert not goal.accepted, name
+        rejection = robot.rejection(goal)
+        assert rejection.error_code == ErrorCode.BUSY and f"force mode is active, and {name} would" in rejection.message, rejection
+    assert simulator.state()["force_mode"]
+    robot.send(Trigger, "force_mode_stop").succeeded()
+    robot.send(SendScript, "send_script", script="sleep(0.1)").succeeded()
+
+
+def test_servo_l_does_not_begin_faster_than_the_tcp_may_move_when_force_mode_moves_the_arm(robot):
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(2.0), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
+    wait_until_moving(robot, 0.012)
+    target = get_tcp_pose(robot)
+    target.position.y += 0.3
+    _, result = robot.send(ServoL, "servo_l", pose=target, time=0.01).wait_for_result()
+    assert result.error_code == ErrorCode.INVALID_GOAL and "use a time of at least" in result.message, result.message
+    assert abs(get_tcp_pose(robot).position.y - target.position.y) > 0.29
+
+
+def test_a_trajectory_does_not_begin_away_from_where_it_was_planned(robot):
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
+    trajectory = timed(point(1.0, home_plus(0.1), [0.0] * 6))
+    trajectory.header.stamp = robot.node.get_clock().now().to_msg()
+    trajectory.header.stamp.sec += 4
+    goal = robot.send(FollowJointTrajectory, "follow_joint_trajectory", trajectory=trajectory)
+    assert goal.accepted
+    robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(5.0), limits=[0.1, 0.1, 0.05, 0.5, 0.5, 0.5]).succeeded()
+    status, result = goal.wait_for_result(20.0)
+    assert status == GoalStatus.STATUS_ABORTED and "since this motion was planned" in result.error_string, result.error_string
+    assert abs(get_joint_state(robot).position[0]) < 0.01
+
+
 def test_force_mode_that_is_started_during_a_motion_outlasts_it(robot, simulator):
     motion = robot.send(MoveJ, "move_j", joint_positions=home_plus(0.5), speed=0.3)
     wait_until_moving(robot)
@@ -182,6 +257,14 @@ def test_motions_are_rejected_in_freedrive(robot, simulator, start, stop, action
     robot.send(MoveJ, "move_j", joint_positions=home_plus(0.1)).succeeded()
 
 
+def test_the_end_of_teach_mode_does_not_end_freedrive(robot, simulator):
+    robot.send(Freedrive, "freedrive_start").succeeded()
+    _, result = robot.send(Trigger, "end_teach_mode").wait_for_result()
+    assert result.error_code == ErrorCode.BUSY and "freedrive_stop" in result.message, result.message
+    assert simulator.state()["freedrive"]
+    robot.send(Trigger, "freedrive_stop").succeeded()
+
+
 def test_teleoperation_leaves_freedrive_to_the_operator(robot, driver, simulator):
     robot.send(Freedrive, "freedrive_start").succeeded()
     publisher = robot.node.create_publisher(JointState, "servo_joint", 1)
@@ -210,6 +293,12 @@ def test_direct_torque_aborts_when_a_joint_exceeds_max_joint_speed(robot):
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, ErrorCode.SAFETY_VIOLATION), result.message
     assert "max_joint_speed" in result.message
     wait_for(lambda: is_at_rest(robot), 15.0, "standstill")
+
+
+def test_direct_torque_rejects_more_than_the_joints_of_this_arm_can_apply(robot):
+    goal = robot.send(DirectTorque, "direct_torque", joint_torques=[0.0, 0.0, 0.0, 0.0, 0.0, 60.0], duration=0.1, max_joint_speed=1.0)
+    assert not goal.accepted
+    assert "wrist_3_joint" in robot.rejection(goal).message and "54 Nm" in robot.rejection(goal).message
 
 
 # They are answered by the control program.

@@ -15,7 +15,7 @@ from robot_fixtures import make_ready, send_after_stop
 from ros_client import Client
 from support import FEW_PLUGINS, HOME, wait_for
 
-from ur_ros_rtde_msgs.action import DashboardCommand, DirectTorque, MoveJ, SendScript, Stop
+from ur_ros_rtde_msgs.action import DashboardCommand, DirectTorque, MoveJ, SendScript, ServoJ, Stop
 from ur_ros_rtde_msgs.msg import ErrorCode
 
 NODES = ["robot_state_receiver", "command_server", "dashboard_server", "driver"]
@@ -282,6 +282,17 @@ def test_a_goal_preempts_one_whose_stop_ends_the_control_program(client, preempt
     first = preempting(name)
     client.send(MoveJ, "move_j", joint_positions=HOME, speed=0.6).succeeded()
     assert first.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+
+
+def test_a_servo_motion_is_checked_where_the_arm_has_come_to_rest(simulator, client, processes):
+    processes(start_node("driver", simulator.address, "plugins:=[move_j,servo_j,stop]", "on_busy:=preempt"))
+    make_ready(client)
+    fast = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=1.5, acceleration=5.0)
+    wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 1.2, 10.0, "a fast motion")
+    here = simulator.state()["actual"]["position"]
+    _, result = client.send(ServoJ, "servo_j", joint_positions=here, time=0.1).wait_for_result()
+    assert result.error_code == ErrorCode.INVALID_GOAL and "use a time of at least" in result.message, result.message
+    assert fast.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
 
 
 @pytest.mark.parametrize("name", PROGRAM_ENDING)

@@ -24,6 +24,7 @@ from ur_ros_rtde_msgs.action import (
     ServoC,
     ServoJ,
     ServoL,
+    SetSpeedSlider,
     SpeedJ,
     SpeedL,
 )
@@ -137,6 +138,15 @@ def test_move_c_follows_the_arc(robot, simulator):
     radii = [math.dist(point, centre) for point in track.points]
     assert max(abs(radius - 0.05) for radius in radii) < 0.003
     assert track.min_distance_to(xyz(via)) < 0.005
+
+
+def test_move_c_keeps_the_angle_to_the_arc(robot, simulator):
+    start = get_tcp_pose(robot)
+    via, end = translated(start, x=0.05, y=0.05), translated(start, y=0.1)
+    via.orientation = Quaternion(x=0.0, y=0.0, z=0.0, w=0.0)  # not used, nor is that of the end
+    robot.send(MoveC, "move_c", via=via, pose=end, speed=0.1, mode=MoveC.Goal.FIXED).succeeded()
+    assert distance(get_tcp_pose(robot), end) < 0.003
+    assert angle(get_tcp_pose(robot), start) == pytest.approx(math.pi, abs=0.02)
 
 
 def test_move_path_combines_motion_types_and_reports_the_waypoint(robot):
@@ -290,6 +300,25 @@ def test_servo_c_reaches_the_pose(robot):
     target = translated(get_tcp_pose(robot), y=0.1)
     result = robot.send(ServoC, "servo_c", pose=target, speed=0.1).succeeded()
     assert distance(result.final_state.tcp_pose, target) < 0.005
+
+
+def test_servo_c_may_be_slower_than_what_counts_as_standstill(robot):
+    target = translated(get_tcp_pose(robot), y=0.012)
+    result = robot.send(ServoC, "servo_c", pose=target, speed=0.004).succeeded()
+    assert distance(result.final_state.tcp_pose, target) < 0.005
+
+
+@pytest.mark.parametrize("action, name, target", [
+    (ServoJ, "servo_j", lambda _: {"joint_positions": [0.2, *HOME[1:]]}),
+    (ServoL, "servo_l", lambda robot: {"pose": translated(get_tcp_pose(robot), y=0.1)})])
+def test_servo_follows_the_speed_slider(robot, simulator, action, name, target):
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=0.5).succeeded()
+    try:
+        begin = simulator.state()["timestamp"]
+        robot.send(action, name, time=1.0, **target(robot)).succeeded()
+        assert simulator.state()["timestamp"] - begin > 2.0
+    finally:
+        robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
 
 
 @pytest.mark.parametrize("name, action, motion, fields", [

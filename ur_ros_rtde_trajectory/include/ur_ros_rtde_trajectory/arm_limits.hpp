@@ -11,6 +11,7 @@ namespace ur_ros_rtde {
 struct ArmLimits {
   Vector6 position;  ///< rad, symmetric: -position … +position
   Vector6 velocity;  ///< rad/s
+  Vector6 torque;    ///< Nm
   double reach;      ///< m, from the center of the base
 };
 
@@ -21,10 +22,10 @@ std::string normalized_model_name(const std::string & name);
 std::optional<ArmLimits> arm_limits(const std::string & model);
 /// Names of all models, separated by commas: "ur3, ur5, …".
 std::string arm_models();
-/// Limits that at least one model can reach: ±2 pi and the highest velocities.
+/// Limits that at least one model can reach: ±2 pi, the highest velocities and torques.
 ArmLimits widest_arm_limits();
-/// Limits that every model can reach: ±2 pi and the lowest velocity of each joint. The reach is the longest
-/// of all models, so that only positions that no arm reaches are excluded.
+/// Limits that every model can reach: ±2 pi, the lowest velocity and torque of each joint. The reach is the
+/// longest of all models, so that only positions that no arm reaches are excluded.
 ArmLimits common_arm_limits();
 
 }  // namespace ur_ros_rtde

@@ -25,22 +25,30 @@ struct Model {
   ArmLimits limits;
 };
 
+// Nm. "Max. joint torques" in UR's user manuals.
+constexpr Vector6 ur3_torques{56.0, 56.0, 28.0, 12.0, 12.0, 12.0};
+constexpr Vector6 ur5_torques{150.0, 150.0, 150.0, 28.0, 28.0, 28.0};
+constexpr Vector6 ur10_torques{330.0, 330.0, 150.0, 56.0, 56.0, 56.0};
+constexpr Vector6 ur10e_torques{330.0, 330.0, 150.0, 54.0, 54.0, 54.0};
+constexpr Vector6 ur15_torques{433.0, 433.0, 204.0, 70.0, 70.0, 70.0};
+constexpr Vector6 ur20_torques{738.0, 738.0, 433.0, 107.0, 107.0, 107.0};
+
 // Universal Robots' technical specifications of the arms (working range, joint speeds, reach).
 constexpr std::array models{
-    Model{"ur3", {two_turns, degrees(180, 180, 180, 360, 360, 360), 0.5}},
-    Model{"ur5", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
-    Model{"ur10", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
-    Model{"ur3e", {two_turns, degrees(180, 180, 180, 360, 360, 360), 0.5}},
-    Model{"ur5e", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
-    Model{"ur7e", {two_turns, degrees(180, 180, 180, 180, 180, 180), 0.85}},
-    Model{"ur10e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
-    Model{"ur12e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 1.3}},
-    Model{"ur16e", {two_turns, degrees(120, 120, 180, 180, 180, 180), 0.9}},
-    Model{"ur8long", {two_turns, degrees(180, 180, 240, 300, 300, 300), 1.75}},
-    Model{"ur15", {two_turns, degrees(180, 180, 240, 300, 300, 300), 1.3}},
-    Model{"ur18", {two_turns, degrees(180, 180, 240, 300, 300, 300), 0.95}},
-    Model{"ur20", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.75}},
-    Model{"ur30", {two_turns, degrees(120, 120, 150, 210, 210, 210), 1.3}},
+    Model{"ur3", {two_turns, degrees(180, 180, 180, 360, 360, 360), ur3_torques, 0.5}},
+    Model{"ur5", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
+    Model{"ur10", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10_torques, 1.3}},
+    Model{"ur3e", {two_turns, degrees(180, 180, 180, 360, 360, 360), ur3_torques, 0.5}},
+    Model{"ur5e", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
+    Model{"ur7e", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
+    Model{"ur10e", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10e_torques, 1.3}},
+    Model{"ur12e", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10e_torques, 1.3}},
+    Model{"ur16e", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10e_torques, 0.9}},
+    Model{"ur8long", {two_turns, degrees(180, 180, 240, 300, 300, 300), ur15_torques, 1.75}},
+    Model{"ur15", {two_turns, degrees(180, 180, 240, 300, 300, 300), ur15_torques, 1.3}},
+    Model{"ur18", {two_turns, degrees(180, 180, 240, 300, 300, 300), ur15_torques, 0.95}},
+    Model{"ur20", {two_turns, degrees(120, 120, 150, 210, 210, 210), ur20_torques, 1.75}},
+    Model{"ur30", {two_turns, degrees(120, 120, 150, 210, 210, 210), ur20_torques, 1.3}},
 };
 
 }  // namespace
@@ -79,6 +87,7 @@ ArmLimits common_arm_limits()
   for (const Model & model : models) {
     for (std::size_t joint = 0; joint < common.velocity.size(); ++joint) {
       common.velocity[joint] = std::min(common.velocity[joint], model.limits.velocity[joint]);
+      common.torque[joint] = std::min(common.torque[joint], model.limits.torque[joint]);
     }
   }
   return common;
@@ -86,7 +95,7 @@ ArmLimits common_arm_limits()
 
 ArmLimits widest_arm_limits()
 {
-  return {two_turns, degrees(360, 360, 360, 360, 360, 360), 1.75};
+  return {two_turns, degrees(360, 360, 360, 360, 360, 360), ur20_torques, 1.75};
 }
 
 }  // namespace ur_ros_rtde

@@ -84,7 +84,7 @@ Expected<SampledSegment> CartesianSampler::sample_segment(double from, double to
   if (Status valid = check_sample(sample); !valid) {
     return tl::unexpected(valid.error());
   }
-  double step = std::min(max_step, (to - from) / min_intervals);
+  double step = std::max(std::min(max_step, (to - from) / min_intervals), 2.0 * min_step);
   while (sample.u < to) {
     if (stop.stop_requested()) {
       return failure(ErrorCode::canceled, "planning was canceled");

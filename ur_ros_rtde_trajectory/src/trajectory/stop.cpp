@@ -95,7 +95,7 @@ std::optional<Motion> find_braking(const Motion & plan, double plan_time, const 
 std::optional<Trajectory> Trajectory::stop_from(double time, const Limits & limits,
                                                 std::chrono::steady_clock::time_point deadline) const
 {
-  if (!(time < duration())) {
+  if (motion_->timing.empty() || !(time < duration())) {
     return *this;
   }
   const double now = std::max(time, 0.0);

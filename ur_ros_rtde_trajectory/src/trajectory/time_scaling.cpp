@@ -66,7 +66,8 @@ void TimeScaling::update_rate(double duration, double target_rate, const Bounds 
   const double max_change = bounds.rate_ddot * duration;
   rate_dot_ += std::clamp(target_rate_dot - rate_dot_, -max_change, max_change);
   const double step = rate_dot_ * duration;
-  const bool arrives = std::abs(remaining) <= std::max(std::abs(step), 1e-4);
+  const bool approaches = step * remaining > 0.0;
+  const bool arrives = std::abs(remaining) <= (approaches ? std::max(std::abs(step), 1e-4) : 1e-4);
   if (arrives) {
     rate_ = target_rate;
     rate_dot_ = 0.0;

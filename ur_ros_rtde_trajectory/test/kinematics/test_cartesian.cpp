@@ -165,6 +165,17 @@ TEST(CartesianPlanTest, RepeatedPosesYieldZeroDuration)
   EXPECT_EQ(plan->waypoint_count(), 3U);
 }
 
+// The first pose is often the current one, as measured.
+TEST(CartesianPlanTest, FollowsSegmentsOfMicrometers)
+{
+  const Arm arm(ur10e);
+  for (const double length : {0.2e-6, 2e-6, 12e-6}) {
+    const auto poses = poses_along(arm, {step(length, 0.0, 0.0), step(0.0, 0.1, 0.0)});
+    const auto plan = plan_cartesian(poses, arm, home(), limits(), {.speed = 0.2}, ik_of(arm));
+    EXPECT_TRUE(plan) << length << ": " << (plan ? "" : plan.error().message);
+  }
+}
+
 // The controller knows the calibration of the arm, the planner knows the nominal parameters.
 TEST(CartesianPlanTest, ReachesThePosesOfCalibratedArm)
 {

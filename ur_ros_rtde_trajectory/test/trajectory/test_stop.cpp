@@ -104,7 +104,8 @@ INSTANTIATE_TEST_SUITE_P(Limits, GentleStopTest,
                          testing::Values(Gentle{1.05, 1.4, 100.0}, Gentle{1.0, 1.0, 0.5},
                                          Gentle{0.5, 0.2, 0.2}, Gentle{0.3, 0.05, 0.05},
                                          Gentle{0.5, 0.1, 0.1}, Gentle{0.5, 0.2, 0.05},
-                                         Gentle{0.5, 0.1, 0.02}),
+                                         Gentle{0.5, 0.1, 0.02}, Gentle{1.0, 5.0, 5.5e4},
+                                         Gentle{1.0, 5.0, 1e7}),
                          [](const auto & test) { return "Row" + std::to_string(test.index); });
 
 TEST(StopTest, IsNotSearchedBeyondTheDeadline)
@@ -146,6 +147,13 @@ TEST(StopTest, DoesNotMoveBeforeTheStart)
     EXPECT_LT(stop.duration(), 0.01);
     EXPECT_LT((stop.sample(1.0).position - plan->sample(0.0).position).abs().maxCoeff(), 1e-12);
   }
+}
+
+TEST(StopTest, IsThePlanItselfIfThatDoesNotMove)
+{
+  const auto plan = plan_path(std::vector<Joints>{Joints::Zero()}, random_limits(1, true));
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->stop_from(-1.0, random_limits(1, true), no_deadline)->duration(), 0.0);
 }
 
 TEST(StopTest, AfterTheEndReturnsTheTrajectory)

@@ -47,6 +47,18 @@ TEST(TimeScalingTest, KeepsFullRateWhenPackagesArriveInPairs)
   EXPECT_NEAR(scaling.time(), 2.0, 1e-9);
 }
 
+TEST(TimeScalingTest, DoesNotJumpToATargetThatItMovesAwayFrom)
+{
+  const Trajectory plan = line();
+  TimeScaling scaling(servo, 1.0, 1.0);
+  while (scaling.rate() > 0.5) {
+    scaling.advance(cycle, 0.0, plan.sample(scaling.time()), test_limits());
+  }
+  const double before = scaling.rate();
+  scaling.advance(cycle, before + 0.003, plan.sample(scaling.time()), test_limits());
+  EXPECT_LT(scaling.rate(), before);
+}
+
 TEST(TimeScalingTest, ContinuesSlowerWithoutSkippingAfterDelay)
 {
   const Trajectory plan = line();

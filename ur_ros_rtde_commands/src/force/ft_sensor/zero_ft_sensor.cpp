@@ -10,12 +10,20 @@ constexpr double zero_tolerance = 5.0;  // N, above the noise of the sensors
 }
 
 class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
+  CommandTraits traits() const override { return {.excludes_force_mode = true}; }
+
   /// A CB3 has no sensor to be zeroed (UR's client library, zeroFTSensor).
   void check(const Goal &, Check & check) const override { check.polyscope(0); }
 
   Outcome run(const Goal &, Run & run) override
   {
     check_result(run.control()->zeroFtSensor(), "zero the sensor");
+    Sample sample = run.state();
+    for (int packages = 0; packages < 2; ++packages) {  // the newest one may be older than the command
+      if (auto why = run.next(sample)) {
+        return *why;
+      }
+    }
     const auto reads_zero = [&] {
       const Vector6 f = run.flange_force();
       return std::hypot(f[0], f[1], f[2]) < zero_tolerance;

@@ -23,15 +23,19 @@ class MoveC : public Command<ur_ros_rtde_msgs::action::MoveC> {
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.pose("via", goal.via).pose("pose", goal.pose);
+    check.position("via", goal.via.position).position("pose", goal.pose.position);
     check_speed(check, goal, linear_speed_limits)
-        .in_range("mode", goal.mode, Goal::UNCONSTRAINED, Goal::FIXED)
-        .reachable("pose", goal.pose);
+        .in_range("mode", goal.mode, Goal::UNCONSTRAINED, Goal::FIXED);
+    if (goal.mode == Goal::UNCONSTRAINED) {
+      check.pose("pose", goal.pose).reachable("pose", goal.pose);
+    }
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    warn_of_identity_orientation(run, {{"pose", goal.pose}});
+    if (goal.mode == Goal::UNCONSTRAINED) {
+      warn_of_identity_orientation(run, {{"pose", goal.pose}});
+    }
     return run_path(run, to_waypoints(goal), [](std::uint32_t) {}, goal.mode);
   }
 };

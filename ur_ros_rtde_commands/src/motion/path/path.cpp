@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <ur_ros_rtde_msgs/action/move_c.hpp>
 
 #include "motion/speed_limits.hpp"
 
@@ -23,7 +24,7 @@ void check_waypoint(Check & check, const std::string & name, std::string_view po
   const bool has_joint_positions = !waypoint.joint_positions.empty();
   check.in_range(name + ".type", waypoint.type, Waypoint::MOVE_J, Waypoint::MOVE_C)
       .pose(fmt::format("{}{}", name, pose), waypoint.pose)
-      .pose(name + ".via", waypoint.via)
+      .position(name + ".via", waypoint.via.position)
       .that(!has_joint_positions || waypoint.type <= Waypoint::MOVE_L,
             name + " has joint_positions, which MOVE_P and MOVE_C do not support: set its pose");
   if (has_joint_positions) {
@@ -39,10 +40,23 @@ std::string pose_text(const geometry_msgs::msg::Pose & pose)
   return fmt::format("p[{:.9f}]", fmt::join(to_ur(pose), ", "));
 }
 
+bool has_position_only(const Waypoint & waypoint, int arc_mode)
+{
+  return waypoint.type == Waypoint::MOVE_C && arc_mode == ur_ros_rtde_msgs::action::MoveC::Goal::FIXED;
+}
+
+/// Without the orientation, which movec does not use in the point on the way, nor, in FIXED mode, at the end.
+std::string position_text(const geometry_msgs::msg::Pose & pose)
+{
+  const auto & p = pose.position;
+  return fmt::format("p[{:.9f}, {:.9f}, {:.9f}, 0, 0, 0]", p.x, p.y, p.z);
+}
+
 /// The URScript call for one waypoint (UR, Script Manual: movej, movel, movep, movec).
 std::string motion_call(const Waypoint & waypoint, int arc_mode)
 {
-  const std::string target = waypoint.joint_positions.empty()
+  const std::string target = has_position_only(waypoint, arc_mode) ? position_text(waypoint.pose)
+                             : waypoint.joint_positions.empty()
                                  ? pose_text(waypoint.pose)
                                  : fmt::format("[{:.9f}]", fmt::join(waypoint.joint_positions, ", "));
   const std::string speed = fmt::format("a={:.6f}, v={:.6f}, r={:.6f}", waypoint.acceleration, waypoint.speed,
@@ -55,7 +69,7 @@ std::string motion_call(const Waypoint & waypoint, int arc_mode)
     case Waypoint::MOVE_P:
       return fmt::format("movep({}, {})", target, speed);
     default:
-      return fmt::format("movec({}, {}, {}, mode={})", pose_text(waypoint.via), target, speed, arc_mode);
+      return fmt::format("movec({}, {}, {}, mode={})", position_text(waypoint.via), target, speed, arc_mode);
   }
 }
 
@@ -119,6 +133,10 @@ Outcome run_path(Run & run, const Waypoints & waypoints,
     return report.error;
   }
   const Waypoint & last = waypoints.back();
+  if (has_position_only(last, arc_mode)) {
+    const auto & p = last.pose.position;
+    return run.until_at_rest_at_position({p.x, p.y, p.z, 0.0, 0.0, 0.0});
+  }
   return last.joint_positions.empty() ? run.until_at_rest_at_pose(to_ur(last.pose))
                                       : run.until_at_rest_at_joints(last.joint_positions);
 }

@@ -25,7 +25,8 @@ Outcome servo(Run & run, double duration, const std::function<void(const ServoSt
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    time += clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
+    time += sample.requested_rate() *
+            clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
     run.progress(smooth_step(std::min(time / duration, 1.0)));
     send({run.progress(), cycle, clock.time()});
   }

@@ -44,7 +44,7 @@ struct ServoStep {
 
 /// Executes a servo motion of `duration` s: calls `send` for each package of the controller, at the end twice
 /// with the same fraction, then calls `wait_for_arrival`, and ends servo control. If the host is late, the
-/// motion continues where it was: the arm becomes slower, never faster.
+/// motion continues where it was: the arm becomes slower, never faster. Follows the speed slider.
 [[nodiscard]] Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
                             const std::function<Outcome()> & wait_for_arrival, double deceleration);
 

@@ -9,6 +9,9 @@ class GetForwardKinematics : public QueryCommand<ur_ros_rtde_msgs::action::GetFo
   {
     check_optional_joints(check, "joint_positions", goal.joint_positions);
     check_optional_tcp(check, goal.use_tcp, goal.tcp).answers_queries();
+    if (!goal.use_tcp) {
+      check.polyscope(0, 6);  // tells the active TCP
+    }
   }
 
   Outcome run(const Goal & goal, Run & run) override

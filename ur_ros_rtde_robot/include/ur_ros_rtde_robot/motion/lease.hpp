@@ -44,6 +44,9 @@ struct Claim {
   std::string id;     ///< goal id; distinguishes commands of the same name
   /// Switches hand guiding on or off, and is therefore possible during it.
   bool switches_hand_guiding = false;
+  /// Changes what force mode measures or regulates, and is therefore not possible during it. Nor is a script,
+  /// which ends force mode.
+  bool excludes_force_mode = false;
   /// The control program answers no query while this holder uses it.
   bool blocks_queries = false;
   /// Preempts only holders with the same `owner`.

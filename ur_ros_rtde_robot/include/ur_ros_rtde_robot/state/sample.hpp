@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -145,6 +147,12 @@ struct Sample {
   /// Time of servoJ's target after that of the newest setpoint, in cycles; below -1 if setpoints came in a
   /// bunch: see SetpointClock.
   double servo_ahead() const { return output_double_registers[12 - first_output_register]; }
+  /// 0..1, at which motions advance: the smaller one, because only some controllers include the slider in
+  /// speed_scaling.
+  double requested_rate() const
+  {
+    return std::clamp(std::fmin(speed_scaling, target_speed_fraction), 0.0, 1.0);
+  }
   bool is_program_running() const { return runtime_state == RuntimeState::playing; }
 };
 
