@@ -36,15 +36,22 @@ void check_motion(ur_ros_rtde::Check & check, const Goal & goal)
 }
 
 /// Runs the snippet, which writes the width to output register 19, and sets the width in the result. After a
-/// failure, the register may have the value of another goal.
+/// failure, the register may have the value of another goal. The functions of the URCap return -1 if they do
+/// not reach the gripper (OnRobot's user manual, on_return).
 template <typename Run>
 ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
 {
-  auto outcome = run.trigger(timeout);
-  if (outcome) {
-    run.result().width = run.registers().get_double(19) / millimeters_per_meter;
+  if (auto outcome = run.trigger(timeout); !outcome) {
+    return outcome;
   }
-  return outcome;
+  const double width = run.registers().get_double(19) / millimeters_per_meter;
+  if (width < 0.0) {
+    return ur_ros_rtde::Outcome::failure(
+        ur_ros_rtde::ErrorCode::rejected_by_robot,
+        "the gripper does not answer: check its power, its cable and the state of the OnRobot URCap");
+  }
+  run.result().width = width;
+  return ur_ros_rtde::Outcome::success();
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

@@ -13,7 +13,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 @pytest.fixture
 def gripper(simulator, robot):
     """A client of a robot with an open, empty gripper."""
-    simulator.control("gripper", stuck=False, object=0.0)
+    simulator.control("gripper", stuck=False, powered=True, object=0.0)
     robot.send(SgRelease, "sg_release", target_width=0.075).succeeded()
     return robot
 
@@ -51,6 +51,16 @@ def test_a_value_out_of_range_is_rejected_with_the_limit(gripper, fields, mentio
     assert not goal.accepted
     rejection = gripper.rejection(goal)
     assert rejection.error_code == ErrorCode.INVALID_GOAL and all(part in rejection.message for part in mentions), rejection.message
+
+
+@pytest.mark.parametrize("action, name, fields", [
+    (SgGrip, "sg_grip", {"target_width": 0.02}), (SgRelease, "sg_release", {"target_width": 0.06}), (SgGetWidth, "sg_get_width", {})])
+def test_a_gripper_without_power_is_an_error(gripper, simulator, action, name, fields):
+    simulator.control("gripper", powered=False)
+    result = gripper.send(action, name, **fields).result()
+    simulator.control("gripper", powered=True)
+    assert not result.success and "the gripper does not answer" in result.message, result.message
+    gripper.send(action, name, **fields).succeeded()
 
 
 def test_a_stuck_gripper_times_out_and_the_driver_stays_ready(gripper, simulator):

@@ -33,12 +33,14 @@ Gripper & installed(Gripper * gripper, const char * otherwise)
 Action soft_gripper(RequestFields & fields)
 {
   const auto stuck = optional_boolean(fields, "stuck");
+  const auto powered = optional_boolean(fields, "powered");
   const double object = fields.number("object", {0.0, SoftGripper::max_width}, 0.0);
   return [=](ControlPortContext & context) -> json {
     SoftGripper & gripper =
         installed(context.world.gripper(),
                   "there is no gripper: start the simulator with --urcap onrobot_soft_gripper");
     gripper.set_stuck(stuck.value_or(gripper.is_stuck()));
+    gripper.set_powered(powered.value_or(gripper.is_powered()));
     gripper.set_object(object);
     return {
         {"width", gripper.width()}, {"busy", gripper.is_busy()}, {"holds_object", gripper.holds_object()}};
@@ -83,9 +85,9 @@ Action digital_gripper(RequestFields & fields)
 }
 
 constexpr std::array gripper_command_table{
-    Command{"gripper", "stuck true|false (unchanged); object mm, 0 none (0)",
-            "Makes the soft gripper stick, or places an object of this width between its cups; returns its "
-            "width.",
+    Command{"gripper", "stuck, powered true|false (unchanged); object mm, 0 none (0)",
+            "Makes the soft gripper stick, switches its power, or places an object of this width between its "
+            "cups; returns its width.",
             soft_gripper},
     Command{
         "robotiq_gripper",

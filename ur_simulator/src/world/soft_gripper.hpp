@@ -24,6 +24,9 @@ class SoftGripper {
   /// A stuck gripper stops and stays busy, as without compressed air.
   void set_stuck(bool stuck) { stuck_ = stuck; }
   bool is_stuck() const { return stuck_; }
+  /// Without power, the URCap does not reach the gripper.
+  void set_powered(bool powered) { powered_ = powered; }
+  bool is_powered() const { return powered_; }
   /// Width of an object between the fingers, mm, which limits closing; 0: no object.
   void set_object(double width) { object_ = width; }
   bool holds_object() const { return object_ > 0.0 && width_ == object_; }
@@ -34,6 +37,7 @@ class SoftGripper {
   double object_ = 0.0;
   bool gentle_ = false;
   bool stuck_ = false;
+  bool powered_ = true;
 };
 
 }  // namespace ur_simulator

@@ -20,6 +20,8 @@ class GripperOperation final : public urscript::PendingCall {
   const SoftGripper & gripper_;
 };
 
+constexpr int no_answer = -1;  // of the functions, from a gripper that the URCap does not reach
+
 Outcome move_to(SoftGripper & gripper, CallContext & context, double width, bool gentle, bool blocking)
 {
   if (width < SoftGripper::min_width || width > SoftGripper::max_width) {
@@ -29,7 +31,10 @@ Outcome move_to(SoftGripper & gripper, CallContext & context, double width, bool
                                 width, SoftGripper::min_width, SoftGripper::max_width);
     popup.warning = true;
     context.host.show_popup(popup);
-    return NextCycle{Value(-1)};
+    return NextCycle{Value(no_answer)};
+  }
+  if (!gripper.is_powered()) {
+    return NextCycle{Value(no_answer)};
   }
   gripper.move_to(width, gentle);
   if (!blocking) {
@@ -68,7 +73,8 @@ Outcome width(const SoftGripper & gripper, Arguments arguments)
 {
   ArgumentReader reader(arguments);
   check_tool(reader, 0);
-  return reader ? Outcome(Value(gripper.width())) : reader.failure();
+  const double reported = gripper.is_powered() ? gripper.width() : no_answer;
+  return reader ? Outcome(Value(reported)) : reader.failure();
 }
 
 }  // namespace
