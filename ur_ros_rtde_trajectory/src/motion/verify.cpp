@@ -65,7 +65,9 @@ int steps_of(const Motion & motion, const TimingLawPiece & piece, double step)
   constexpr double points_per_blend = 200.0;
   constexpr double max_points = 2000.0;  // of a polynomial, which has few extremes
   const PathPiece & curve = motion.path->pieces[piece.piece];
-  double steps = std::clamp(piece.duration / step, 6.0, max_points);
+  // Between 20 points, the acceleration of a quintic is at most 0.3 % above that at the nearest one.
+  const double least_points = curve.degree == degree_of_timed_pieces ? 20.0 : 6.0;
+  double steps = std::clamp(piece.duration / step, least_points, max_points);
   if (curve.degree > degree_of_timed_pieces) {
     const double covered = (piece.at(piece.end()).u - piece.at(piece.start).u) / curve.length;
     steps = std::max(steps, points_per_blend * std::min(covered, 1.0));

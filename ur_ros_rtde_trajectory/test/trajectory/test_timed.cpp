@@ -71,6 +71,24 @@ TEST_P(TimedTrajectoryTest, PassesWaypointsOnTimeAndApproximatesTheSampledMotion
   }
 }
 
+TEST(TimedTrajectoryLimitTest, IsFoundBetweenWaypointsThatAreClose)
+{
+  TimedWaypoints waypoints;
+  const std::vector<double> zero(6, 0.0);
+  const double distance = 1e-4, duration = 0.01;
+  waypoints.times = {0.0, duration};
+  waypoints.positions = {zero, {distance, 0.0, 0.0, 0.0, 0.0, 0.0}};
+  waypoints.velocities = waypoints.accelerations = {zero, zero};
+  Limits tight = limits();
+  tight.jerk.setConstant(1e6);
+  const double peak =
+      10.0 / std::sqrt(3.0) * distance / (duration * duration);  // of a quintic from rest to rest
+  tight.acceleration.setConstant(1.01 * peak);
+  EXPECT_TRUE(plan_timed(waypoints, tight));
+  tight.acceleration.setConstant(peak / 1.02);
+  EXPECT_FALSE(plan_timed(waypoints, tight));
+}
+
 TEST_P(TimedTrajectoryTest, CanBeStoppedAlongItsPath)
 {
   const auto plan = plan_timed(samples(GetParam()), limits());
