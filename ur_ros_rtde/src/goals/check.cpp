@@ -195,10 +195,12 @@ Check & Check::position(std::string_view field, const geometry_msgs::msg::Point 
   const double distance = std::hypot(position.x, position.y, position.z);
   that(std::isfinite(distance), fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field,
                                             position.x, position.y, position.z));
-  return that(distance <= reach + 1.0,  // a tool may add a metre
-              fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool",
-                          field, distance, reach),
-              ErrorCode::unreachable);
+  if (ok() && distance > reach + 1.0) {  // a tool may add a metre
+    fail(ErrorCode::unreachable,
+         fmt::format("{}.position is {:.3f} m from the base, the arm reaches {:.3f} m without its tool",
+                     field, distance, reach));
+  }
+  return *this;
 }
 
 Check & Check::vector(std::string_view field, const geometry_msgs::msg::Vector3 & vector, double limit,

@@ -22,11 +22,11 @@ class EndModeCommand : public Command<ur_ros_rtde_msgs::action::Trigger> {
   Outcome run(const Goal &, Run & run) override
   {
     if (const auto other = (run.robot().activities() & hand_guiding).without(activity_); !other.empty()) {
-      return Outcome::failure(ErrorCode::busy,
-                              fmt::format("the arm is not in {}: {}", mode_,
-                                          other.contains(Activity::freedrive)
-                                              ? "freedrive is active, which freedrive_stop ends"
-                                              : "teach mode is active, which end_teach_mode ends"));
+      const bool is_freedrive = other.contains(Activity::freedrive);
+      return Outcome::failure(
+          ErrorCode::busy,
+          fmt::format("the arm is in {}, which {} ends", is_freedrive ? "freedrive" : "teach mode",
+                      is_freedrive ? "freedrive_stop" : "end_teach_mode"));
     }
     Mode(run, end_, mode_).end();
     const auto stop_reason = run.until_standstill();
