@@ -18,15 +18,10 @@ class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
   Outcome run(const Goal &, Run & run) override
   {
     check_result(run.control()->zeroFtSensor(), "zero the sensor");
-    Sample sample = run.state();
-    for (int packages = 0; packages < 2; ++packages) {  // the newest one may be older than the command
-      if (auto why = run.next(sample)) {
-        return *why;
-      }
-    }
+    const auto newest = run.state().sequence;  // may be older than the command
     const auto reads_zero = [&] {
       const Vector6 f = run.flange_force();
-      return std::hypot(f[0], f[1], f[2]) < zero_tolerance;
+      return run.state().sequence > newest + 1 && std::hypot(f[0], f[1], f[2]) < zero_tolerance;
     };
     const Outcome outcome =
         run.expect(reads_zero, std::chrono::seconds(1), "the sensor does not read zero afterwards");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde_robot/motion/setpoint_clock.hpp"
 
 namespace ur_ros_rtde {
@@ -12,25 +13,34 @@ constexpr double max_linear_speed = 3.0;    // m/s
 constexpr double max_angular_speed = 3.14;  // rad/s
 }  // namespace
 
-Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
-              const std::function<Outcome()> & wait_for_arrival, double deceleration)
+Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(const ServoStep &)> & send,
+              const std::function<Outcome()> & wait_for_arrival)
 {
+  Check again(&run.robot());
+  motion.check(again);
+  if (!again.ok()) {
+    return *again.error();
+  }
+  const ArmLimits limits = run.robot().limits();
   const double cycle = run.robot().cycle_time();
   Sample sample = run.state();
   SetpointClock clock(sample, cycle);
   bool at_end = false;
   for (double time = 0.0; !at_end;) {
-    at_end = clock.is_at_end(time - duration);
+    at_end = clock.is_at_end(time - motion.duration);
     const double before = sample.controller_time;
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
+    if (Status safe = check_joint_velocities(sample, limits); motion.has_poses && !safe) {
+      return safe;
+    }
     time += sample.requested_rate() *
             clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
-    run.progress(smooth_step(std::min(time / duration, 1.0)));
+    run.progress(smooth_step(std::min(time / motion.duration, 1.0)));
     send({run.progress(), cycle, clock.time()});
   }
-  return finish_servo(run, wait_for_arrival(), deceleration);
+  return finish_servo(run, wait_for_arrival(), motion.deceleration);
 }
 
 Outcome finish_servo(Run & run, const Outcome & arrival, double deceleration)

@@ -42,11 +42,21 @@ struct ServoStep {
   double time;      ///< cycles of the controller; lets the control program bridge late setpoints of servoJ
 };
 
-/// Executes a servo motion of `duration` s: calls `send` for each package of the controller, at the end twice
+struct ServoMotion {
+  double duration;      ///< s
+  double deceleration;  ///< m/s^2, at its end
+  /// Repeated where the motion begins: a goal that was preempted, or force mode, has moved the arm.
+  std::function<void(Check &)> check;
+  /// Its setpoints are poses: see check_joint_velocities().
+  bool has_poses = false;
+};
+
+/// Executes a servo motion: calls `send` for each package of the controller, at the end twice
 /// with the same fraction, then calls `wait_for_arrival`, and ends servo control. If the host is late, the
 /// motion continues where it was: the arm becomes slower, never faster. Follows the speed slider.
-[[nodiscard]] Outcome servo(Run & run, double duration, const std::function<void(const ServoStep &)> & send,
-                            const std::function<Outcome()> & wait_for_arrival, double deceleration);
+[[nodiscard]] Outcome servo(Run & run, const ServoMotion & motion,
+                            const std::function<void(const ServoStep &)> & send,
+                            const std::function<Outcome()> & wait_for_arrival);
 
 /// Ends servo control after a successful arrival. After a failure, the base class stops the arm.
 [[nodiscard]] Outcome finish_servo(Run & run, const Outcome & arrival, double deceleration);

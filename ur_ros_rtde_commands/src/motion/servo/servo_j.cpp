@@ -20,17 +20,15 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   {
     const Vector6 start = run.state().actual_q;
     const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
-    // A goal that was preempted, or force mode, has moved the arm in the meantime.
-    if (Check again(&run.robot());
-        !again.reachable_in("joint_positions", goal.joint_positions, time, smooth_step_peak).ok()) {
-      return *again.error();
-    }
+    const auto check_speed = [&](Check & again) {
+      again.reachable_in("joint_positions", goal.joint_positions, time, smooth_step_peak);
+    };
     const auto send = [&](const ServoStep & step) {
       const auto target = interpolate_joints(start, goal.joint_positions, step.fraction);
       run.control()->servoJ(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain, step.time);
     };
     const auto wait_for_arrival = [&] { return run.until_at_rest_at_joints(goal.joint_positions); };
-    return servo(run, time, send, wait_for_arrival, goal.deceleration);
+    return servo(run, {time, goal.deceleration, check_speed}, send, wait_for_arrival);
   }
 };
 

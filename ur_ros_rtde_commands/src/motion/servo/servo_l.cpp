@@ -2,7 +2,6 @@
 
 #include "motion/servo/servo.hpp"
 #include "ur_ros_rtde/command.hpp"
-#include "ur_ros_rtde/streaming.hpp"
 #include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
@@ -25,20 +24,13 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
     const Vector6 & start = sample.actual_tcp_pose;
     const auto end = tcp_target(goal, sample);
     const double time = goal.time > 0.0 ? goal.time : default_tcp_duration(start, end);
-    Check again;  // a goal that was preempted, or force mode, has moved the arm in the meantime
-    check_tcp_speed(again, start, end, time);
-    if (!again.ok()) {
-      return *again.error();
-    }
-    const ArmLimits limits = run.robot().limits();
     const auto send = [&](const ServoStep & step) {
-      if (const Status safe = check_joint_velocities(run.state(), limits); !safe) {
-        throw RobotError(safe.error());
-      }
       const auto target = interpolate_pose(start, end, step.fraction);
       run.control()->servoL(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain);
     };
-    return servo(run, time, send, [&] { return run.until_at_rest_at_pose(end); }, goal.deceleration);
+    const auto check_speed = [&](Check & again) { check_tcp_speed(again, start, end, time); };
+    const auto wait_for_arrival = [&] { return run.until_at_rest_at_pose(end); };
+    return servo(run, {time, goal.deceleration, check_speed, true}, send, wait_for_arrival);
   }
 };
 
