@@ -5,12 +5,19 @@
 
 namespace ur_ros_rtde {
 
+namespace {
+void check_speed(Check & check, const std::vector<double> & positions, double time)
+{
+  check.reachable_in("joint_positions", positions, time, smooth_step_peak);
+}
+}  // namespace
+
 class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   void check(const Goal & goal, Check & check) const override
   {
     check.joints("joint_positions", goal.joint_positions);
     if (check_servo(check, goal).ok() && goal.time > 0.0) {
-      check.reachable_in("joint_positions", goal.joint_positions, goal.time, smooth_step_peak);
+      check_speed(check, goal.joint_positions, goal.time);
     }
   }
 
@@ -20,15 +27,13 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   {
     const Vector6 start = run.state().actual_q;
     const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
-    const auto check_speed = [&](Check & again) {
-      again.reachable_in("joint_positions", goal.joint_positions, time, smooth_step_peak);
-    };
+    const auto check_again = [&](Check & check) { check_speed(check, goal.joint_positions, time); };
     const auto send = [&](const ServoStep & step) {
       const auto target = interpolate_joints(start, goal.joint_positions, step.fraction);
       run.control()->servoJ(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain, step.time);
     };
     const auto wait_for_arrival = [&] { return run.until_at_rest_at_joints(goal.joint_positions); };
-    return servo(run, {time, goal.deceleration, check_speed}, send, wait_for_arrival);
+    return servo(run, {time, goal.deceleration, check_again}, send, wait_for_arrival);
   }
 };
 
