@@ -6,7 +6,7 @@
 namespace ur_ros_rtde {
 
 namespace {
-void check_speed(Check & check, const std::vector<double> & positions, double time)
+void check_in_time(Check & check, const std::vector<double> & positions, double time)
 {
   check.reachable_in("joint_positions", positions, time, smooth_step_peak);
 }
@@ -17,7 +17,7 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   {
     check.joints("joint_positions", goal.joint_positions);
     if (check_servo(check, goal).ok() && goal.time > 0.0) {
-      check_speed(check, goal.joint_positions, goal.time);
+      check_in_time(check, goal.joint_positions, goal.time);
     }
   }
 
@@ -27,7 +27,7 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   {
     const Vector6 start = run.state().actual_q;
     const double time = goal.time > 0.0 ? goal.time : default_joint_duration(start, goal.joint_positions);
-    const auto check_again = [&](Check & check) { check_speed(check, goal.joint_positions, time); };
+    const auto check_again = [&](Check & check) { check_in_time(check, goal.joint_positions, time); };
     const auto send = [&](const ServoStep & step) {
       const auto target = interpolate_joints(start, goal.joint_positions, step.fraction);
       run.control()->servoJ(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain, step.time);

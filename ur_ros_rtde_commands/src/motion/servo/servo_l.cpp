@@ -20,17 +20,16 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    const Sample sample = run.state();
-    const Vector6 & start = sample.actual_tcp_pose;
-    const auto end = tcp_target(goal, sample);
+    const Vector6 start = run.state().actual_tcp_pose;
+    const auto end = tcp_target(goal, run.state());
     const double time = goal.time > 0.0 ? goal.time : default_tcp_duration(start, end);
     const auto send = [&](const ServoStep & step) {
       const auto target = interpolate_pose(start, end, step.fraction);
       run.control()->servoL(target, 0.0, 0.0, step.cycle, goal.lookahead_time, goal.gain);
     };
-    const auto check_speed = [&](Check & again) { check_tcp_speed(again, start, end, time); };
-    const auto wait_for_arrival = [&] { return run.until_at_rest_at_pose(end); };
-    return servo(run, {time, goal.deceleration, check_speed, true}, send, wait_for_arrival);
+    const auto check_again = [&](Check & check) { check_tcp_speed(check, start, end, time); };
+    return servo(run, {time, goal.deceleration, check_again, true}, send,
+                 [&] { return run.until_at_rest_at_pose(end); });
   }
 };
 
