@@ -46,7 +46,7 @@ void TimeScaling::advance(double elapsed, double target_rate, const Point & poin
 }
 
 // While the setpoint was constant, the controller has slowed the arm down with its servo lag. The setpoint,
-// which is at time + lead * rate of the plan, does not jump.
+// which is at time + lead * rate of the plan, does not jump while the plan has a constant velocity.
 void TimeScaling::slow_for_delay(double delay)
 {
   if (delay > 0.0) {
