@@ -8,7 +8,7 @@ namespace ur_ros_rtde::trajectory {
 /// with the controller's clock at a rate from 0 to 1. The rate changes smoothly if another rate is requested
 /// or the host was late. After a late setpoint, the plan continues where the last setpoint was, to which the
 /// arm has gone on (`lead`), slowed down by as much as the arm has slowed down in the meantime. Where the
-/// velocity of the plan changes, the setpoint may step, by less than the arm would have moved in the gap.
+/// velocity of the plan changes, the setpoint may step.
 ///
 /// The plan keeps its limits at any constant rate. A change of the rate r adds q' r' to the accelerations and
 /// q' r'' to the jerks. It uses the remaining margin of the limits, and as much as the limits themselves, up
