@@ -20,6 +20,7 @@
 namespace ur_ros_rtde {
 
 struct CalledCommand;
+class Check;
 class CommandPlugin;
 
 /// Gives a command access to the robot while it executes a goal, in the goal's thread.
@@ -79,6 +80,10 @@ class Run {
                                const std::string & otherwise, ErrorCode code = ErrorCode::rejected_by_robot);
   /// Waits for the first sample newer than `sample` and stores it there. For loops at the controller's rate.
   [[nodiscard]] std::optional<StopReason> next(Sample & sample);
+
+  /// Repeats a check of the goal where the motion begins: a goal that was preempted, or force mode, has moved
+  /// the arm since it was accepted.
+  [[nodiscard]] Outcome check_again(const std::function<void(Check &)> & check);
 
   /// Waits until the asynchronous motion that the last call through control() has started has ended and the
   /// arm is at rest. Fails if the control program did not start it, or after `timeout`.

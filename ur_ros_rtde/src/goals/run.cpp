@@ -37,6 +37,13 @@ ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sampl
 
 Run::Run(RunContext context) : context_(std::move(context)), mark_(context_.robot.mark_motion()) {}
 
+Outcome Run::check_again(const std::function<void(Check &)> & check)
+{
+  Check again(&context_.robot);
+  check(again);
+  return again.ok() ? Outcome::success() : *again.error();
+}
+
 Locked<ur_rtde::RTDEControlInterface> Run::control()
 {
   mark_ = robot().mark_motion();

@@ -16,10 +16,8 @@ constexpr double max_angular_speed = 3.14;  // rad/s
 Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(const ServoStep &)> & send,
               const std::function<Outcome()> & wait_for_arrival)
 {
-  Check again(&run.robot());
-  motion.check(again);
-  if (!again.ok()) {
-    return *again.error();
+  if (Outcome begins = run.check_again(motion.check); !begins) {
+    return begins;
   }
   const ArmLimits limits = run.robot().limits();
   const double cycle = run.robot().cycle_time();

@@ -45,7 +45,7 @@ struct ServoStep {
 struct ServoMotion {
   double duration;      ///< s
   double deceleration;  ///< m/s^2, at its end
-  /// Repeated where the motion begins: a goal that was preempted, or force mode, has moved the arm.
+  /// Repeated where the motion begins: Run::check_again().
   std::function<void(Check &)> check;
   /// Its setpoints are poses: see check_joint_velocities().
   bool has_poses = false;
