@@ -54,16 +54,18 @@ class BrakingSearch {
   double step_at(double plan_time) const
   {
     const Joints speed = plan_point(plan_time).velocity.abs().max(1e-9);
+    const double rate_dot = (acceleration_ / speed).minCoeff();
     const double rate_ddot = (jerk_ / speed).minCoeff();
-    const double ramp = std::min(highest_rate_dot(plan_time) / rate_ddot, std::sqrt(1.0 / rate_ddot));
+    const double ramp = std::min(rate_dot / rate_ddot, std::sqrt(1.0 / rate_ddot));
     return std::max(shortest_step, ramp / steps_per_ramp);
   }
 
-  // |r'| that the acceleration limits allow where the plan has a constant speed. In one step, r' changes by
-  // twice as much at most, however high the jerk limits are.
-  double highest_rate_dot(double plan_time) const
+  // r' that the acceleration limits allow. With high jerk limits, one step must not lead beyond it.
+  double lowest_rate_dot(const TimeScalingState & s) const
   {
-    return (acceleration_ / plan_point(plan_time).velocity.abs().max(1e-9)).minCoeff();
+    const Point p = plan_point(s.plan_time);
+    const Joints own = p.acceleration * (s.rate * s.rate) * p.velocity.sign();
+    return -((usable_fraction_ * acceleration_ + own) / p.velocity.abs().max(1e-9)).minCoeff();
   }
 
   Point plan_point(double plan_time) const
@@ -153,7 +155,7 @@ class BrakingSearch {
   // is the first r'' of the recovery from this state, and receives that of the next state.
   double hardest_braking(const TimeScalingState & s, double & recovery) const
   {
-    const double low = std::max(feasible_rate_ddot(s).low, -2.0 * highest_rate_dot(s.plan_time) / step_);
+    const double low = std::max(feasible_rate_ddot(s).low, (lowest_rate_dot(s) - s.rate_dot) / step_);
     double next_recovery = 0.0;
     for (const double fraction : {0.98, 0.8, 0.6, 0.4, 0.25, 0.12, 0.05, 0.02}) {
       const double rate_ddot = low + (1.0 - fraction) * std::max(0.0, recovery - low);
