@@ -19,18 +19,26 @@ class EndModeCommand : public Command<ur_ros_rtde_msgs::action::Trigger> {
   {
     return {.leaves_mode_active = true, .switches_hand_guiding = hand_guiding.contains(activity_)};
   }
+  void check(const Goal &, Check & check) const override
+  {
+    check.query([this](const Robot & robot) { return is_not_in_the_other_mode(robot); });
+  }
   Outcome run(const Goal &, Run & run) override
   {
-    if (const auto other = (run.robot().activities() & hand_guiding).without(activity_); !other.empty()) {
-      const bool is_freedrive = other.contains(Activity::freedrive);
-      return Outcome::failure(
-          ErrorCode::busy,
-          fmt::format("the arm is in {}, which {} ends", is_freedrive ? "freedrive" : "teach mode",
-                      is_freedrive ? "freedrive_stop" : "end_teach_mode"));
-    }
     Mode(run, end_, mode_).end();
     const auto stop_reason = run.until_standstill();
     return stop_reason ? Outcome(*stop_reason) : Outcome::success();
+  }
+  /// The driver would take it to be on, although the controller may have ended it.
+  Status is_not_in_the_other_mode(const Robot & robot) const
+  {
+    const Activities other = (robot.activities() & hand_guiding).without(activity_);
+    const bool is_freedrive = other.contains(Activity::freedrive);
+    return other.empty()
+               ? Status()
+               : failure(ErrorCode::busy, fmt::format("the arm is in {}, which {} ends",
+                                                      is_freedrive ? "freedrive" : "teach mode",
+                                                      is_freedrive ? "freedrive_stop" : "end_teach_mode"));
   }
 
   const Mode::EndFunction end_;
