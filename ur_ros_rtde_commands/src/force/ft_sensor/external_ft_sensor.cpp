@@ -12,6 +12,8 @@ class ExternalFtSensorCommand : public Command<ur_ros_rtde_msgs::action::EnableE
                                                            const std::vector<double> &);
   explicit ExternalFtSensorCommand(Function enable) : enable_(enable) {}
 
+  CommandTraits traits() const override { return {.excludes_force_mode = true}; }
+
   void check(const Goal & goal, Check & check) const override
   {
     check.in_range("sensor_mass", goal.sensor_mass, 0.0, 10.0, "kg")
