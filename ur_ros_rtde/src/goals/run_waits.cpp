@@ -286,7 +286,7 @@ Outcome Run::until_at(const Target & target, double tolerance)
     const double left = target.distance(state());
     progress(std::max(progress(), std::clamp(1.0 - left / initial, 0.0, 1.0)));
     const bool at_rest = robot().motion_progress(mark_).at_rest;
-    approach.update(left, !at_rest || is_paused(state()));
+    approach.update(left, (!at_rest && !is_compliant()) || is_paused(state()));
     reached = at_rest && left <= tolerance;
     return reached || approach.idle() > settling_timeout || (is_compliant() && left <= tolerance);
   };

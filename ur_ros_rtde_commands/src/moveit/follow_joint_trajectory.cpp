@@ -249,7 +249,8 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
     const Sample sample = run.state();
     held = tolerances.check(end - Eigen::Map<const Joints>(sample.actual_q.data()),
                             -Eigen::Map<const Joints>(sample.actual_qd.data()));
-    return held && !run.robot().is_moving();
+    const bool is_compliant = run.robot().activities().contains(Activity::force_mode);
+    return held && (is_compliant || !run.robot().is_moving());
   };
   if (auto stop_reason =
           run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {

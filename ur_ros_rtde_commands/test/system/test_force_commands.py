@@ -116,7 +116,8 @@ def test_force_mode_can_be_changed_during_a_motion_along_a_surface(robot, simula
 
 
 @pytest.mark.parametrize("force", [30.0, 2.0])
-def test_a_motion_in_force_mode_ends_with_its_path(robot, simulator, force):
+@pytest.mark.parametrize("action, name, fields", [(MoveL, "move_l", {"speed": 0.05}), (ServoL, "servo_l", {"time": 1.0})])
+def test_a_motion_in_force_mode_ends_with_its_path(robot, simulator, action, name, fields, force):
     """A surface keeps the arm from its target, or nothing keeps it from drifting."""
     robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()
     target = get_tcp_pose(robot)
@@ -125,7 +126,7 @@ def test_a_motion_in_force_mode_ends_with_its_path(robot, simulator, force):
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(force), limits=[0.1, 0.1, 0.02, 0.5, 0.5, 0.5]).succeeded()
     wait_for(lambda: get_tcp_pose(robot).position.z < target.position.z - 0.004, 10.0, "the arm to follow the force")
     target.position.y += 0.02
-    robot.send(MoveL, "move_l", pose=target, speed=0.05).succeeded(10.0)
+    robot.send(action, name, pose=target, **fields).succeeded(15.0)
     assert get_tcp_pose(robot).position.y == pytest.approx(target.position.y, abs=0.003)
     assert get_tcp_pose(robot).position.z < target.position.z - 0.003
     assert simulator.state()["force_mode"], "a successful motion leaves force mode active"
