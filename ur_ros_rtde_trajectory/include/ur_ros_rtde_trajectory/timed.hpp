@@ -10,9 +10,9 @@ inline constexpr std::size_t max_timed_waypoints = 100000;
 
 /// Waypoints with given times. All lists that are not empty have the same length.
 struct TimedWaypoints {
-  std::vector<double> times;  ///< s, 0.1 ms apart or more, from 0 to at most max_duration
-  std::vector<std::vector<double>> positions;      ///< rad, six values each; the first is where the arm is
-  std::vector<std::vector<double>> velocities;     ///< rad/s; may be empty. At both ends at most 1e-3
+  std::vector<double> times;                    ///< s, 0.1 ms apart or more, from 0 to at most max_duration
+  std::vector<std::vector<double>> positions;   ///< rad, six values each; the first is where the arm is
+  std::vector<std::vector<double>> velocities;  ///< rad/s; may be empty. At both ends at most 1e-3
   std::vector<std::vector<double>> accelerations;  ///< rad/s^2; may be empty; only together with velocities.
                                                    ///< At both ends, a step from rest within the jerk limit
 };

@@ -101,7 +101,8 @@ constexpr std::array query_command_table{
         "of sending, largest target joint speed rad/s, target TCP speed m/s], the commands in input integer "
         "register 0 from "
         "cycle 'after' on (at most 256) as [cycle, arrival, code], and separately those with the same "
-        "code as the previous one (at most 16384), followed by whether they hold its target. Fails if data after 'after' has been overwritten.",
+        "code as the previous one (at most 16384), followed by whether they hold its target. Fails if data "
+        "after 'after' has been overwritten.",
         trace},
 };
 
