@@ -8,7 +8,7 @@ LONG = {
     "execute_cartesian_path": 45,  # plans in two steps: the path, then its timing
     "execute_parametrized_trajectory": 28,
     "execute_trajectory": 28,
-    "follow_joint_trajectory": 228,  # MoveIt's action has its own result codes and tolerances
+    "follow_joint_trajectory": 229,  # MoveIt's action has its own result codes and tolerances
 }
 SLACK = 10  # lines by which a limit in LONG may exceed the length of its command
 

@@ -233,6 +233,24 @@ TEST(ArbiterTest, GrantsAModeDuringAMotionButNotDuringAScript)
   EXPECT_EQ(arbiter.arm_holders().size(), 1U);
 }
 
+/// Force mode would begin with a load or a TCP that is about to change.
+TEST(ArbiterTest, ExcludesAModeAndWhatForceModeReliesOnMutually)
+{
+  Arbiter arbiter;
+  Claim setting = claim(Resource::motion, "set_tcp");
+  setting.excludes_force_mode = true;
+  {
+    const auto lease = arbiter.acquire(setting, admit);
+    ASSERT_TRUE(lease);
+    const auto mode = arbiter.acquire(claim(Resource::mode, "force_mode_start"), admit);
+    ASSERT_FALSE(mode);
+    EXPECT_NE(mode.error().message.find("set_tcp is running"), std::string::npos) << mode.error().message;
+  }
+  const auto mode = arbiter.acquire(claim(Resource::mode, "force_mode"), admit);
+  ASSERT_TRUE(mode);
+  EXPECT_FALSE(arbiter.acquire(setting, admit));
+}
+
 TEST(ArbiterTest, DoesNotGrantWhatIsNotAdmitted)
 {
   Arbiter arbiter;

@@ -25,7 +25,7 @@ struct CommandTraits {
   bool leaves_mode_active = false;
   /// Switches freedrive or teach mode on or off: its goals are accepted while the arm is guided by hand.
   bool switches_hand_guiding = false;
-  /// Changes what force mode measures or regulates: its goals are rejected (busy) during force mode.
+  /// Changes what force mode relies on (payload, TCP, gravity, the sensor): rejected (busy) during it.
   bool excludes_force_mode = false;
   /// Accepts and executes goals in every state of the robot; needs the dashboard server only.
   bool allowed_in_any_state = false;

@@ -101,6 +101,8 @@ class Run {
   [[nodiscard]] Outcome until_at_rest_at_pose(const std::vector<double> & pose);
   /// The same for the position of a pose alone.
   [[nodiscard]] Outcome until_at_rest_at_position(const std::vector<double> & pose);
+  /// Whether force mode moves the arm: a motion ends without a standstill, and not at its target.
+  bool is_compliant() const;
   /// The last asynchronous motion has ended, or has not started within 1 s.
   bool motion_ended() const;
   /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.
@@ -181,7 +183,6 @@ class Run {
   struct Target;
   Outcome until_reached(const Target & target, double tolerance);
   Outcome until_at(const Target & target, double tolerance);
-  bool is_compliant() const;
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();

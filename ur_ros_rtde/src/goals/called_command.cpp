@@ -82,6 +82,15 @@ Status Run::may_execute(const CalledCommand & called) const
                    fmt::format("it needs the resource {}, and the command that calls it has {}: see traits()",
                                to_string(wanted.traits.resource), to_string(own)));
   }
+  if (wanted.traits.excludes_force_mode) {
+    Claim claim;
+    claim.resource = wanted.traits.resource;
+    claim.owner = wanted.action;
+    claim.excludes_force_mode = true;
+    if (Status possible = robot().may_use(claim); !possible) {
+      return possible;
+    }
+  }
   return wanted.is_extension ? robot().has_extension(wanted.plugin) : Status();
 }
 

@@ -208,17 +208,16 @@ std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds timeout
   return why;
 }
 
-/// Where force mode moves the arm, a motion ends without a standstill, and not at its target.
 bool Run::is_compliant() const
 {
-  return robot().activities().contains(Activity::force_mode);
+  const Activities active = robot().activities();
+  return active.contains(Activity::force_mode) && !active.contains(Activity::contact_detection);
 }
 
 bool Run::motion_ended() const
 {
   const MotionProgress motion = robot().motion_progress(mark_);
-  const bool has_ended = motion.started && !motion.running && !motion.program_ended;
-  return (has_ended && (motion.at_rest || is_compliant())) ||
+  return motion.finished() || (motion.ended() && is_compliant()) ||
          (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
 }
 
@@ -241,26 +240,29 @@ Outcome Run::until_reached(const Target & target, double tolerance)
 {
   const double initial = target.distance(state());
   Approach approach(initial);
+  bool ended = false;
   const auto update = [&] {
     const double left = target.distance(state());
     progress(initial > tolerance ? std::clamp(1.0 - left / initial, 0.0, 1.0) : 1.0);
     approach.update(left, is_paused(state()));
-    return motion_ended() || approach.idle() > longest_idle_motion;
+    ended = motion_ended();
+    return ended || approach.idle() > longest_idle_motion;
   };
   if (auto why = until(update, max_motion_duration)) {
     return *why;
   }
-  if (!motion_ended()) {
+  if (!ended) {
     return Outcome::failure(
         ErrorCode::timeout,
         fmt::format("the arm has not come closer to the target for {} min, {} are left: see the log on the "
                     "teach pendant",
                     longest_idle_motion.count(), target.description(state())));
   }
-  if (Outcome ended = until_motion_ends(); !ended && target.distance(state()) > tolerance) {
-    return ended;
+  const bool is_reached = target.distance(state()) <= tolerance;
+  if (Outcome outcome = until_motion_ends(); !outcome && !is_reached) {
+    return outcome;
   }
-  if (target.distance(state()) > tolerance && !is_compliant()) {
+  if (!is_reached && !is_compliant()) {
     return target.missed(state());
   }
   progress(1.0);

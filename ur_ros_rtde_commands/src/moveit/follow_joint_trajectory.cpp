@@ -249,8 +249,7 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
     const Sample sample = run.state();
     held = tolerances.check(end - Eigen::Map<const Joints>(sample.actual_q.data()),
                             -Eigen::Map<const Joints>(sample.actual_qd.data()));
-    const bool is_compliant = run.robot().activities().contains(Activity::force_mode);
-    return held && (is_compliant || !run.robot().is_moving());
+    return static_cast<bool>(held);
   };
   if (auto stop_reason =
           run.until(arrived, std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e9)))) {
@@ -258,9 +257,11 @@ Outcome FollowJointTrajectory::wait_for_arrival(const Goal & goal, Run & run, co
       return *stop_reason;
     }
     run.result().error_code = Result::GOAL_TOLERANCE_VIOLATED;
-    return Outcome::failure(ErrorCode::not_reached,
-                            fmt::format("{:.2f} s after the end of the trajectory {}", limit,
-                                        held ? "the arm was still moving" : held.error().message));
+    return Outcome::failure(ErrorCode::not_reached, fmt::format("{:.2f} s after the end of the trajectory {}",
+                                                                limit, held.error().message));
+  }
+  if (auto why = run.is_compliant() ? std::nullopt : run.until_standstill()) {
+    return *why;
   }
   run.control()->servoStop();
   return Outcome::success();

@@ -58,7 +58,7 @@ Status check_still_at(const Joints & start, const Sample & sample)
   return distance <= moved_tolerance
              ? Status()
              : failure(
-                   ErrorCode::not_reached,
+                   ErrorCode::invalid_goal,
                    fmt::format("the arm has moved by {:.4f} rad since this motion was planned, at most {} "
                                "rad are allowed: end force mode, or send the goal again",
                                distance, moved_tolerance));

@@ -10,16 +10,15 @@ namespace {
 /// The names are those of an arm: timed_waypoints().
 void check_prefix(Check & check, const std::vector<std::string> & names, const std::string & own)
 {
-  const std::string & any_joint = joint_names()[0];
-  for (const std::string & name : names) {
-    if (name.ends_with(any_joint)) {
-      const std::string prefix = name.substr(0, name.size() - any_joint.size());
-      check.that(prefix.empty() || prefix == own,
-                 fmt::format("joint_names have the prefix \"{}\", but those of this arm have {}: send the "
-                             "goal to the other arm, or set tf_prefix",
-                             prefix, own.empty() ? std::string("none") : fmt::format("\"{}\"", own)));
-    }
+  if (!check.ok() || names.empty()) {
+    return;
   }
+  const std::string & name = names[(*joint_order(names))[0]];
+  const std::string prefix = name.substr(0, name.size() - joint_names()[0].size());
+  check.that(prefix.empty() || prefix == own,
+             fmt::format("joint_names have the prefix \"{}\", but those of this arm have {}: send the "
+                         "goal to the other arm, or set tf_prefix",
+                         prefix, own.empty() ? std::string("none") : fmt::format("\"{}\"", own)));
 }
 
 }  // namespace

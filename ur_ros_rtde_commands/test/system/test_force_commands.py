@@ -179,6 +179,7 @@ def test_a_trajectory_does_not_begin_away_from_where_it_was_planned(robot):
     robot.send(ForceMode, "force_mode_start", compliant=ALONG_Z, wrench=down(5.0), limits=[0.1, 0.1, 0.05, 0.5, 0.5, 0.5]).succeeded()
     status, result = goal.wait_for_result(20.0)
     assert status == GoalStatus.STATUS_ABORTED and "since this motion was planned" in result.error_string, result.error_string
+    assert result.error_code == FollowJointTrajectory.Result.INVALID_GOAL
     assert abs(get_joint_state(robot).position[0]) < 0.01
 
 

@@ -287,10 +287,13 @@ def test_a_goal_preempts_one_whose_stop_ends_the_control_program(client, preempt
 def test_a_servo_motion_is_checked_where_the_arm_has_come_to_rest(simulator, client, processes):
     processes(start_node("driver", simulator.address, "plugins:=[move_j,servo_j,stop]", "on_busy:=preempt"))
     make_ready(client)
-    fast = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=1.5, acceleration=5.0)
-    wait_for(lambda: abs(simulator.state()["actual"]["velocity"][0]) > 1.2, 10.0, "a fast motion")
-    here = simulator.state()["actual"]["position"]
-    _, result = client.send(ServoJ, "servo_j", joint_positions=here, time=0.1).wait_for_result()
+    client.send(ServoJ, "servo_j", joint_positions=HOME).succeeded()  # so that the next one is sent at once
+    fast = client.send(MoveJ, "move_j", joint_positions=FAR_TARGET, speed=2.0, acceleration=5.0)
+    wait_for(lambda: simulator.state()["actual"]["velocity"][0] > 1.9, 10.0, "a fast motion")
+    # Within reach in this time, in passing. The arm comes to rest about 1 rad further.
+    ahead = simulator.state()["actual"]["position"]
+    ahead[0] += 0.3
+    _, result = client.send(ServoJ, "servo_j", joint_positions=ahead, time=0.3).wait_for_result()
     assert result.error_code == ErrorCode.INVALID_GOAL and "use a time of at least" in result.message, result.message
     assert fast.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
 

@@ -321,6 +321,21 @@ def test_servo_follows_the_speed_slider(robot, simulator, action, name, target):
         robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
 
 
+def test_servo_follows_the_speed_slider_smoothly(robot, simulator):
+    recorder = TargetRecorder(simulator)
+    goal = robot.send(ServoJ, "servo_j", joint_positions=[1.0, *HOME[1:]], time=2.0)
+    wait_for(lambda: get_joint_speed(robot) > 0.7, 10.0, "the arm to move")
+    robot.send(SetSpeedSlider, "set_speed_slider", fraction=0.1).succeeded()
+    try:
+        wait_for(lambda: get_joint_speed(robot) < 0.2, 10.0, "the arm to slow down")
+        recorder.update()
+    finally:
+        robot.send(SetSpeedSlider, "set_speed_slider", fraction=1.0).succeeded()
+    goal.succeeded()
+    host_was_late = recorder.gaps(longer_than=4)  # then the controller slows the arm down
+    assert host_was_late or recorder.max_deceleration() < 4.0  # 0.9 rad/s within lookahead_time: 9 rad/s²
+
+
 @pytest.mark.parametrize("name, action, motion, fields", [
     ("stop_j", MoveJ, "move_j", {"joint_positions": [2.0, *HOME[1:]], "speed": 0.8, "acceleration": 2.0}),
     ("stop_l", MoveLRelative, "move_l_relative", {"translation": Vector3(z=-0.3), "speed": 0.2}),

@@ -10,14 +10,18 @@
 namespace ur_ros_rtde {
 namespace {
 
-bool conflicts(Resource a, Resource b)
+bool excludes(const Claim & a, const Claim & b)
 {
-  const auto excluded_by_script = [](Resource resource) { return moves_arm(resource); };
-  if (a == Resource::none || b == Resource::none) {
+  return (a.resource == Resource::script && moves_arm(b.resource)) ||
+         (a.excludes_force_mode && b.resource == Resource::mode);
+}
+
+bool conflicts(const Claim & a, const Claim & b)
+{
+  if (a.resource == Resource::none || b.resource == Resource::none) {
     return false;
   }
-  return a == b || (a == Resource::script && excluded_by_script(b)) ||
-         (b == Resource::script && excluded_by_script(a));
+  return a.resource == b.resource || excludes(a, b) || excludes(b, a);
 }
 
 bool may_preempt(const Claim & claim, const Claim & holder)
@@ -39,11 +43,10 @@ struct Lease::Table {
   std::vector<const Claim *> waiting;
 
   /// The mutex must be held.
-  std::shared_ptr<Permit> conflicting(Resource resource) const
+  std::shared_ptr<Permit> conflicting(const Claim & claim) const
   {
-    const auto found = std::find_if(permits.begin(), permits.end(), [&](const auto & permit) {
-      return conflicts(resource, permit->claim().resource);
-    });
+    const auto found = std::find_if(permits.begin(), permits.end(),
+                                    [&](const auto & permit) { return conflicts(claim, permit->claim()); });
     return found == permits.end() ? nullptr : *found;
   }
 
@@ -52,7 +55,7 @@ struct Lease::Table {
     std::vector<std::function<void(const Error &)>> functions;
     const std::lock_guard lock(mutex);
     for (const Claim * claim : waiting) {
-      if (conflicts(newest.resource, claim->resource) && may_preempt(newest, *claim)) {
+      if (conflicts(newest, *claim) && may_preempt(newest, *claim)) {
         functions.push_back(claim->preempt);
       }
     }
@@ -80,7 +83,7 @@ struct Lease::Table {
                        Permit::Clock::time_point deadline, const std::stop_token & stop)
   {
     std::vector<std::shared_ptr<Permit>> asked;
-    while (const auto holder = conflicting(claim.resource)) {
+    while (const auto holder = conflicting(claim)) {
       if (!may_preempt(claim, holder->claim())) {
         return;
       }
@@ -94,7 +97,7 @@ struct Lease::Table {
         lock.lock();
         continue;
       }
-      const auto is_released = [&] { return conflicting(claim.resource) != holder; };
+      const auto is_released = [&] { return conflicting(claim) != holder; };
       if (!released.wait_until(lock, stop, deadline, is_released)) {
         return;
       }
@@ -105,7 +108,7 @@ struct Lease::Table {
   static Expected<Lease> grant(const std::shared_ptr<Table> & table, Claim claim,
                                const Arbiter::Admission & admit)
   {
-    if (const auto holder = table->conflicting(claim.resource)) {
+    if (const auto holder = table->conflicting(claim)) {
       return failure(ErrorCode::busy,
                      fmt::format("{} is running and holds the resource {}: wait for its end, or cancel it",
                                  name(holder->claim()), to_string(holder->claim().resource)));
@@ -190,7 +193,7 @@ Expected<Lease> Arbiter::acquire_preempting(const Claim & claim, const Admission
   while (true) {
     table_->preempt_holders(lock, claim, why, deadline, stop);
     auto lease = Lease::Table::grant(table_, claim, admit);
-    if (lease || table_->conflicting(claim.resource)) {
+    if (lease || table_->conflicting(claim)) {
       return lease;
     }
     lock.unlock();
@@ -205,7 +208,9 @@ Expected<Lease> Arbiter::acquire_preempting(const Claim & claim, const Admission
 std::shared_ptr<const Permit> Arbiter::holder(Resource resource) const
 {
   const std::lock_guard lock(table_->mutex);
-  return table_->conflicting(resource);
+  Claim claim;
+  claim.resource = resource;
+  return table_->conflicting(claim);
 }
 
 std::vector<std::shared_ptr<Permit>> Arbiter::arm_holders() const

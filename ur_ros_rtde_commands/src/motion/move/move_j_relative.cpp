@@ -38,8 +38,9 @@ class MoveJRelative : public Command<ur_ros_rtde_msgs::action::MoveJRelative> {
   Outcome run(const Goal & goal, Run & run) override
   {
     const Vector6 start = run.state().actual_q;
-    if (Check again; !check_offsets(again, goal.joint_offsets, start).ok()) {
-      return *again.error();
+    const auto check_range = [&](Check & check) { check_offsets(check, goal.joint_offsets, start); };
+    if (Outcome begins = run.check_again(check_range); !begins) {
+      return begins;
     }
     std::vector<double> target(start.begin(), start.end());
     std::transform(start.begin(), start.end(), goal.joint_offsets.begin(), target.begin(), std::plus<>());

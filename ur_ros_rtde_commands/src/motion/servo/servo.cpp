@@ -11,6 +11,7 @@ namespace ur_ros_rtde {
 namespace {
 constexpr double max_linear_speed = 3.0;    // m/s
 constexpr double max_angular_speed = 3.14;  // rad/s
+constexpr double max_rate_change = 2.0;     // 1/s, the ramp of the controller's speed slider
 }  // namespace
 
 Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(const ServoStep &)> & send,
@@ -23,6 +24,7 @@ Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(co
   const double cycle = run.robot().cycle_time();
   Sample sample = run.state();
   SetpointClock clock(sample, cycle);
+  double rate = sample.requested_rate();
   bool at_end = false;
   for (double time = 0.0; !at_end;) {
     at_end = clock.is_at_end(time - motion.duration);
@@ -33,8 +35,11 @@ Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(co
     if (Status safe = check_joint_velocities(sample, limits); motion.has_poses && !safe) {
       return safe;
     }
-    time += sample.requested_rate() *
-            clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
+    const double elapsed =
+        clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
+    const double change = sample.requested_rate() - rate;
+    rate += std::clamp(change, -max_rate_change * elapsed, max_rate_change * elapsed);
+    time += rate * elapsed;
     run.progress(smooth_step(std::min(time / motion.duration, 1.0)));
     send({run.progress(), cycle, clock.time()});
   }

@@ -44,8 +44,8 @@ struct Claim {
   std::string id;     ///< goal id; distinguishes commands of the same name
   /// Switches hand guiding on or off, and is therefore possible during it.
   bool switches_hand_guiding = false;
-  /// Changes what force mode measures or regulates, and is therefore not possible during it. Nor is a script,
-  /// which ends force mode.
+  /// Changes what force mode relies on, and is therefore not possible during it, nor while a mode is
+  /// switched. A script, which would end force mode, is not possible either.
   bool excludes_force_mode = false;
   /// The control program answers no query while this holder uses it.
   bool blocks_queries = false;

@@ -23,7 +23,9 @@ struct MotionProgress {
   bool at_rest = false;        ///< proven: for several cycles, or at the end of an asynchronous operation
   bool program_ended = false;  ///< the robot program has ended since the mark, which ends the motion
   unsigned progress = 0;       ///< index of the current waypoint of a path
-  bool finished() const { return started && !running && at_rest && !program_ended; }
+  /// At rest or not, which it is not if force mode moves the arm.
+  bool ended() const { return started && !running && !program_ended; }
+  bool finished() const { return ended() && at_rest; }
 };
 
 /// What stopped the arm, in the order in which a stop takes them: docs/internals/goals.md, "Means of a stop".
