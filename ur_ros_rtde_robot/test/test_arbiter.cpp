@@ -244,7 +244,8 @@ TEST(ArbiterTest, ExcludesAModeAndWhatForceModeReliesOnMutually)
     ASSERT_TRUE(lease);
     const auto mode = arbiter.acquire(claim(Resource::mode, "force_mode_start"), admit);
     ASSERT_FALSE(mode);
-    EXPECT_NE(mode.error().message.find("set_tcp, goal 3f2a is running"), std::string::npos) << mode.error().message;
+    EXPECT_NE(mode.error().message.find("set_tcp, goal 3f2a is running"), std::string::npos)
+        << mode.error().message;
   }
   const auto mode = arbiter.acquire(claim(Resource::mode, "force_mode"), admit);
   ASSERT_TRUE(mode);
