@@ -20,28 +20,38 @@ Sample with_ahead(double cycles)
 /// Share of a cycle by which the clock advances.
 double pace(double ahead)
 {
-  return SetpointClock(Sample{}, cycle).advance(with_ahead(ahead), cycle) / cycle;
+  return SetpointClock(cycle).advance(with_ahead(ahead), cycle) / cycle;
 }
 
 SetpointClock after_step(double ahead)
 {
-  SetpointClock clock(Sample{}, cycle);
+  SetpointClock clock(cycle);
   clock.advance(with_ahead(ahead), cycle);
   return clock;
 }
 
-TEST(SetpointClockTest, BeginsAtTheTimeOfTheController)
+/// The controller keeps registers with 32 bits.
+TEST(SetpointClockTest, HasTimesThatFitRegistersWhenTheControllerHasRunForWeeks)
 {
-  Sample now{};
-  now.controller_time = 3.0;
-  EXPECT_DOUBLE_EQ(SetpointClock(now, cycle).time(), 1500.0);
+  SetpointClock clock(cycle);
+  Sample now = with_ahead(0.0);
+  now.controller_time = 30.0 * 86400.0;
+  bool began_anew = false;
+  for (double before = clock.time(); !began_anew; before = clock.time()) {
+    clock.advance(now, cycle);
+    ASSERT_EQ(static_cast<double>(static_cast<float>(clock.time())), clock.time());
+    began_anew = clock.time() < before;
+    ASSERT_TRUE(began_anew || clock.time() - before > 0.999);
+    ASSERT_LE(clock.time(), SetpointClock::longest_time);
+  }
+  EXPECT_GT(clock.time(), 0.0) << "0: a setpoint without a time";
 }
 
 TEST(SetpointClockTest, AdvancesByTheElapsedTimeWhileTheTargetIsNotBehind)
 {
   for (const double ahead : {4.0, 0.0, -1.0}) {
     EXPECT_EQ(pace(ahead), 1.0) << ahead;
-    EXPECT_EQ(after_step(ahead).time(), 1.0) << ahead;
+    EXPECT_EQ(after_step(ahead).time(), 2.0) << ahead;
   }
   EXPECT_EQ(pace(std::numeric_limits<double>::quiet_NaN()), 1.0) << "not provided";
 }
@@ -62,11 +72,11 @@ TEST(SetpointClockTest, LetsTheTargetCatchUpWithoutOvershoot)
 
 TEST(SetpointClockTest, AdvancesByNoMoreThanTheControlProgramBridges)
 {
-  SetpointClock clock(Sample{}, cycle);
+  SetpointClock clock(cycle);
   EXPECT_DOUBLE_EQ(clock.advance(with_ahead(0.0), 30 * cycle), 30 * cycle);
-  EXPECT_EQ(clock.time(), SetpointClock::bridged_cycles);
+  EXPECT_EQ(clock.time(), 1.0 + SetpointClock::bridged_cycles);
   clock.advance(with_ahead(0.0), -1.0);
-  EXPECT_EQ(clock.time(), SetpointClock::bridged_cycles) << "another link";
+  EXPECT_EQ(clock.time(), 1.0 + SetpointClock::bridged_cycles) << "another link";
 }
 
 TEST(SetpointClockTest, WaitsForTheTargetAtTheEndOfAPlanForALimitedTime)

@@ -109,7 +109,8 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
   static void move(Run & run, const Sample & start, const Vector3 & velocity)
   {
     const Vector3 v = ur_ros_rtde::rotate(ur_ros_rtde::rotation(start.actual_tcp_pose), velocity);
-    run.control()->speedL({v[0], v[1], v[2], 0.0, 0.0, 0.0}, acceleration, 0.0);
+    // With a time: speedl takes the next velocity before it has reached this one.
+    run.control()->speedL({v[0], v[1], v[2], 0.0, 0.0, 0.0}, acceleration, run.robot().cycle_time());
   }
 
   static Outcome find_surface(const Goal & goal, Run & run)

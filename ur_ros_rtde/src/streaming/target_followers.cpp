@@ -102,7 +102,7 @@ class JointFollower : public TargetFollower {
   void begin(const Sample & sample, double cycle, const ArmLimits & limits) override
   {
     cycle_ = cycle;
-    clock_.emplace(sample, cycle);
+    clock_.emplace(cycle);
     limits_ = limits;
     from_ = to_ = at_ = sample.actual_q;
     line_.begin(0.0);
@@ -237,8 +237,9 @@ class TwistFollower : public TargetFollower {
     return largest(target.values) > standstill_speed;
   }
 
-  void begin(const Sample &, double, const ArmLimits & limits) override
+  void begin(const Sample &, double cycle, const ArmLimits & limits) override
   {
+    cycle_ = cycle;
     limits_ = limits;
     target_ = {};
   }
@@ -270,12 +271,15 @@ class TwistFollower : public TargetFollower {
       const Vector3 angular = rotate(orientation, {twist[3], twist[4], twist[5]});
       twist = {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
     }
-    run.control()->speedL(to_ur(twist), options_.acceleration, 0.0);
+    // Without a time, speedl returns when the arm has reached the speed (UR, Script Manual): the control
+    // program would take the next twist, which may be zero, only then.
+    run.control()->speedL(to_ur(twist), options_.acceleration, cycle_);
     return {};
   }
 
  private:
   const StreamOptions options_;
+  double cycle_ = 0.0;
   ArmLimits limits_{};
   StreamTarget target_{};
 };

@@ -38,7 +38,7 @@ ServoStream::ServoStream(Run & run, ServoSettings settings, SetpointCallback on_
       settings_(std::move(settings)),
       on_setpoint_(std::move(on_setpoint)),
       cycle_(run.robot().cycle_time()),
-      clock_(run.state(), cycle_),
+      clock_(cycle_),
       target_(trajectory::joint_count)
 {
   state_.sample = run.state();

@@ -136,6 +136,20 @@ def test_the_arm_decelerates_after_the_timeout_of_a_topic(robot, simulator):
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
+def test_a_twist_is_followed_before_the_arm_has_reached_the_one_before(robot, simulator):
+    is_released = []
+
+    def speed():
+        return math.hypot(*simulator.state()["target_tcp_speed"][:3])
+
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", 0.0 if is_released else -0.3), rate=100.0):
+        wait_for(lambda: speed() > 0.03, 15.0, "the arm to move")
+        is_released.append(True)
+        recorder = TargetRecorder(simulator)
+        wait_for(lambda: recorder.update() and speed() < 0.005, 10.0, "the arm to brake")
+    assert recorder.max_tcp_speed() < 0.25, "0.3 m/s take 0.3 s at 1 m/s^2 (stream_acceleration)"
+
+
 @pytest.mark.parametrize("frame, sign", [("base", 1.0), ("tool0_controller", -1.0)])
 def test_twist_moves_along_the_axes_of_its_frame(robot, frame, sign):
     start = get_tcp_pose(robot).position

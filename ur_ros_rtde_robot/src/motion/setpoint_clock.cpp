@@ -19,6 +19,9 @@ double SetpointClock::advance(const Sample & now, double elapsed)
   pace_ = pace(-1.0 - now.servo_ahead());
   const double passed = pace_ * elapsed;
   time_ += std::clamp(passed / cycle_, 0.0, bridged_cycles);
+  if (time_ > longest_time) {
+    time_ = first_time;
+  }
   return passed;
 }
 

@@ -23,7 +23,7 @@ Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(co
   const ArmLimits limits = run.robot().limits();
   const double cycle = run.robot().cycle_time();
   Sample sample = run.state();
-  SetpointClock clock(sample, cycle);
+  SetpointClock clock(cycle);
   double rate = sample.requested_rate();
   bool at_end = false;
   for (double time = 0.0; !at_end;) {
