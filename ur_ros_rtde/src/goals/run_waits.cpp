@@ -46,11 +46,11 @@ Clock::time_point deadline_in(std::chrono::nanoseconds timeout)
   return left < Clock::time_point::max() - now ? now + left : Clock::time_point::max();
 }
 
-/// While the arm moves more slowly than this, it counts as at rest.
+/// By the speed slider.
 bool is_paused(const Sample & sample)
 {
-  constexpr double least_rate = 0.01;
-  return sample.requested_rate() < least_rate;
+  constexpr double least_fraction = 0.01;
+  return sample.target_speed_fraction < least_fraction;
 }
 
 /// Measures how long the arm has not come closer to its target.
