@@ -151,6 +151,16 @@ TEST(PublisherPauseTest, KnowsForHowLongAPublisherHasPublished)
   EXPECT_FALSE(age_of_publisher(published_at(10.5), published_at(10.6), shortest)) << "they are not counted";
 }
 
+TEST(TwistFollowerTest, RejectsNan)
+{
+  const auto follower = follow_twists({});
+  for (std::size_t i = 0; i < 6; ++i) {
+    StreamTarget target;
+    target.values[i] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(follower->set_target(target, 0.01)) << i;
+  }
+}
+
 TEST(TargetFollowerTest, KnowsWhichTwistsCommandAMotion)
 {
   const auto follower = follow_twists({});

@@ -18,7 +18,9 @@ std::string with_unit(std::string_view unit)
   return unit.empty() ? std::string() : fmt::format(" {}", unit);
 }
 
-double length(const geometry_msgs::msg::Vector3 & v)
+/// NaN if a coordinate is. The hypot of three may lose it (libstdc++).
+template <typename Vector>
+double length(const Vector & v)
 {
   return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
@@ -192,7 +194,7 @@ Check & Check::pose(std::string_view field, const geometry_msgs::msg::Pose & pos
 Check & Check::position(std::string_view field, const geometry_msgs::msg::Point & position)
 {
   const double reach = limits().reach;
-  const double distance = std::hypot(position.x, position.y, position.z);
+  const double distance = length(position);
   that(std::isfinite(distance), fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field,
                                             position.x, position.y, position.z));
   if (ok() && distance > reach + 1.0) {  // a tool may add a metre

@@ -228,6 +228,12 @@ class PoseFollower : public TargetFollower {
   LineDuration duration_;
 };
 
+/// NaN if one is: the hypot of three coordinates may lose it (libstdc++).
+double length(double x, double y, double z)
+{
+  return std::hypot(std::hypot(x, y), z);
+}
+
 class TwistFollower : public TargetFollower {
  public:
   explicit TwistFollower(const StreamOptions & options) : options_(options) {}
@@ -246,8 +252,8 @@ class TwistFollower : public TargetFollower {
 
   Status set_target(const StreamTarget & target, double) override
   {
-    const double linear = std::hypot(target.values[0], target.values[1], target.values[2]);
-    const double angular = std::hypot(target.values[3], target.values[4], target.values[5]);
+    const double linear = length(target.values[0], target.values[1], target.values[2]);
+    const double angular = length(target.values[3], target.values[4], target.values[5]);
     if (!(linear <= highest_linear_speed && angular <= highest_angular_speed)) {
       return failure(
           ErrorCode::invalid_goal,
