@@ -151,7 +151,7 @@ TEST(PublisherPauseTest, KnowsForHowLongAPublisherHasPublished)
   EXPECT_FALSE(age_of_publisher(published_at(10.5), published_at(10.6), shortest)) << "they are not counted";
 }
 
-TEST(TwistFollowerTest, RejectsNan)
+TEST(TargetFollowerTest, RejectsATwistWithNan)
 {
   const auto follower = follow_twists({});
   for (std::size_t i = 0; i < 6; ++i) {
