@@ -89,8 +89,8 @@ class Run {
   /// arm is at rest. Fails if the control program did not start it, or after `timeout`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
   /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere, and
-  /// (timeout) if the arm does not come closer to it for 10 min, without the time in which the speed is
-  /// scaled to zero. Joint positions in rad; a UR pose: position (m) and rotation vector (rad). In force
+  /// (timeout) if the arm does not come closer to it for 10 min, without the time in which the speed
+  /// slider is at 0. Joint positions in rad; a UR pose: position (m) and rotation vector (rad). In force
   /// mode, which moves the arm as well, the end of the motion is sufficient, at rest or not, here and below.
   [[nodiscard]] Outcome until_joints_reached(const std::vector<double> & positions);
   [[nodiscard]] Outcome until_pose_reached(const std::vector<double> & pose);

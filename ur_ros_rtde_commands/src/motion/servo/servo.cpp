@@ -32,8 +32,10 @@ Outcome servo(Run & run, const ServoMotion & motion, const std::function<void(co
     if (auto stop_reason = run.next(sample)) {
       return *stop_reason;
     }
-    if (Status safe = check_joint_velocities(sample, limits); motion.has_poses && !safe) {
-      return safe;
+    if (motion.has_poses) {
+      if (Status safe = check_joint_velocities(sample, limits); !safe) {
+        return safe;
+      }
     }
     const double elapsed =
         clock.advance(sample, std::clamp(sample.controller_time - before, 0.0, 2.0 * cycle));
