@@ -129,10 +129,7 @@ class Client:
         return self.send_goal(action, name, action.Goal(**fields))
 
     def send_goal(self, action, name, message):
-        if name not in self._actions:
-            self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
-        client = self._actions[name]
-        self._wait_for_server(client, name)
+        client = self.wait_for_server(action, name)
         goal = Goal(self, None)
         goal._future = self.call_in_executor(lambda: client.send_goal_async(
             message, feedback_callback=lambda message: goal.feedback.append(message.feedback)))
@@ -148,9 +145,14 @@ class Client:
         if client is not None:
             self.call_in_executor(lambda: client.destroy() or True)
 
-    def _wait_for_server(self, client, name):
+    def wait_for_server(self, action, name):
+        """Returns the client of an action whose server has been found."""
+        if name not in self._actions:
+            self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
+        client = self._actions[name]
         try:
             wait_for(client.server_is_ready, 60.0, f"the action {name}")
+            return client
         except AssertionError as error:
             topics = {topic: self.node.count_publishers(f"{name}/_action/{topic}") for topic in ("feedback", "status")}
             services = sorted(service for service, _ in self.node.get_service_names_and_types() if f"/{name}/_action/" in service)

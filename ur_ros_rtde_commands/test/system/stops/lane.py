@@ -20,7 +20,6 @@ from cell import StatusTrackingClient
 from own_domain import Domain
 from plugin_prefix import TEST_COMMANDS, environment_of_test_commands
 from programs import Process, Simulator, start_node
-from rclpy.action import ActionClient
 from rclpy.qos import QoSProfile
 from ros_client import Goal
 from support import HOME, wait_for
@@ -64,14 +63,6 @@ class Report:
     seconds: float = 0.0  # of the host, for the whole case
 
 
-class LaneClient(StatusTrackingClient):
-    def prepare(self, action, name: str) -> None:
-        """Discovers the server, so that a goal is sent at once."""
-        if name not in self._actions:
-            self._actions[name] = self.call_in_executor(lambda: ActionClient(self.node, action, name))
-        self._wait_for_server(self._actions[name], name)
-
-
 class Lane:
     def __init__(self, address: str, log: pathlib.Path, holds: bool = True):
         self._log = log
@@ -81,7 +72,7 @@ class Lane:
         self.driver: Optional[Process] = None
         self.simulator = Simulator(address, recovery_time_factor=0.02)
         self.scene = goal_kinds.Scene(self.simulator.state()["actual_tcp_pose"])
-        self.client = LaneClient(self._domain.number, "stops")
+        self.client = StatusTrackingClient(self._domain.number, "stops")
         self.page = Page(self.client)
         self._holder = Holder() if holds else None
         self._spare: Optional[Process] = None
@@ -123,7 +114,7 @@ class Lane:
 
     def send_in_executor(self, action, name: str, **fields) -> int:
         """Sends a goal that belongs to the event. Returns when, ns since the epoch."""
-        self.client.prepare(action, name)
+        self.client.wait_for_server(action, name)
         when = self.now()
         self._others.append(self.client.send(action, name, **fields))
         return when
