@@ -175,6 +175,25 @@ TEST_F(ExternalControlTest, EndsTheProgramWithItsNode)
   EXPECT_TRUE(keeps_still());
 }
 
+/// Torques end with the control program. The next node would begin while the arm moves.
+TEST_F(ExternalControlTest, EndsTheWholeProgramAfterTorques)
+{
+  start(options());
+  controller.control({{"command", "store_external_control"},
+                      {"host", own_address()},
+                      {"port", port},
+                      {"next", "set_standard_digital_out(3, True)"}});
+  play();
+  ASSERT_TRUE(becomes_ready());
+  ASSERT_TRUE(control()->directTorque({20.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+  ASSERT_TRUE(eventually([&] { return robot->is_moving(); })) << log.text();
+  const auto report = robot->stop_motion();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_TRUE(at_rest());
+  EXPECT_EQ(controller.state().at("io").at("digital_outputs"), 0) << "the next node has begun";
+}
+
 TEST_F(ExternalControlTest, DoesNotResumeTheMotionOfAPausedProgram)
 {
   start(options());

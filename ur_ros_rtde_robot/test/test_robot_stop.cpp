@@ -112,9 +112,11 @@ TEST_F(StopTest, EndsServoJ)
     ASSERT_TRUE(robot->wait_for_next(sample, 1s));
   }
   EXPECT_TRUE(robot->is_moving());
-  const auto report = robot->stop_motion();
+  recording = true;
+  const auto report = robot->stop_motion(decelerating(1.0, 40.0));
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::stop_command);
+  EXPECT_NEAR(highest_deceleration(5), 1.0, 0.2) << "the joint turns the tool in place";
   EXPECT_TRUE(at_rest());
   EXPECT_TRUE(robot->ready_to_move());
 }

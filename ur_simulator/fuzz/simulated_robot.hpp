@@ -49,7 +49,7 @@ class SimulatedRobot {
       requests.protective_stop = [this](const ErrorCode &, const std::string &) { protective_stop_ = true; };
       library_ = make_robot_library({state, *arm, *world, model, watchdog, requests, cycle_time, nullptr});
     }
-    runner.emplace(ProgramContext{state, *arm, watchdog, log, library_, cycle_time});
+    runner.emplace(ProgramContext{state, *arm, *world, watchdog, log, library_, cycle_time});
     pendant.emplace(model, options_, state, *safety, *runner, log);
     pendant->set_program_request(
         [](const ProgramHost &, const auto & done) { done(tl::unexpected<std::string>("no host")); });

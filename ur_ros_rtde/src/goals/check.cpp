@@ -18,11 +18,10 @@ std::string with_unit(std::string_view unit)
   return unit.empty() ? std::string() : fmt::format(" {}", unit);
 }
 
-/// NaN if a coordinate is. The hypot of three may lose it (libstdc++).
 template <typename Vector>
-double length(const Vector & v)
+double length_of(const Vector & v)
 {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  return length(v.x, v.y, v.z);
 }
 
 Expected<Vector3> rotation_vector_of(const geometry_msgs::msg::Pose & pose)
@@ -194,7 +193,7 @@ Check & Check::pose(std::string_view field, const geometry_msgs::msg::Pose & pos
 Check & Check::position(std::string_view field, const geometry_msgs::msg::Point & position)
 {
   const double reach = limits().reach;
-  const double distance = length(position);
+  const double distance = length_of(position);
   that(std::isfinite(distance), fmt::format("{}.position is ({}, {}, {}) m, it must be finite", field,
                                             position.x, position.y, position.z));
   if (ok() && distance > reach + 1.0) {  // a tool may add a metre
@@ -215,9 +214,9 @@ Check & Check::vector(std::string_view field, const geometry_msgs::msg::Vector3 
 
 Check & Check::twist(std::string_view field, const geometry_msgs::msg::Twist & twist)
 {
-  return in_range(fmt::format("the length of {}.linear", field), length(twist.linear), 0.0, 3.0, "m/s")
-      .in_range(fmt::format("the length of {}.angular", field), length(twist.angular), 0.0, 3.14, "rad/s")
-      .that(length(twist.linear) > 0.0 || length(twist.angular) > 0.0,
+  return in_range(fmt::format("the length of {}.linear", field), length_of(twist.linear), 0.0, 3.0, "m/s")
+      .in_range(fmt::format("the length of {}.angular", field), length_of(twist.angular), 0.0, 3.14, "rad/s")
+      .that(length_of(twist.linear) > 0.0 || length_of(twist.angular) > 0.0,
             fmt::format("{} is zero: nothing would move", field));
 }
 

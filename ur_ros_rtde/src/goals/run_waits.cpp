@@ -106,7 +106,7 @@ Run::Target Run::Target::pose(const std::vector<double> & pose)
 {
   const auto offset = [target = to_array(pose)](const Sample & sample) {
     const Vector6 d = pose_trans(pose_inverse(sample.actual_tcp_pose), target);
-    return std::pair{std::hypot(d[0], d[1], d[2]), std::hypot(d[3], d[4], d[5])};
+    return std::pair{length(position(d)), length(rotation(d))};
   };
   return {[offset](const Sample & sample) {
             const auto [distance, angle] = offset(sample);
@@ -122,7 +122,7 @@ Run::Target Run::Target::position(const std::vector<double> & pose)
 {
   const auto distance = [target = to_array(pose)](const Sample & sample) {
     const Vector6 & here = sample.actual_tcp_pose;
-    return std::hypot(here[0] - target[0], here[1] - target[1], here[2] - target[2]);
+    return length(here[0] - target[0], here[1] - target[1], here[2] - target[2]);
   };
   return {distance, [distance](const Sample & sample) { return fmt::format("{:.4f} m", distance(sample)); }};
 }

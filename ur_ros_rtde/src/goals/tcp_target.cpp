@@ -15,7 +15,7 @@ constexpr double max_rotation_without_warning = std::numbers::pi / 2.0;  // rad
 double rotation_angle(const Vector6 & from, const Vector6 & to)
 {
   const Vector6 displacement = pose_trans(pose_inverse(from), to);
-  return std::hypot(displacement[3], displacement[4], displacement[5]);
+  return length(rotation(displacement));
 }
 
 Vector6 to_pose(const std::vector<double> & values)

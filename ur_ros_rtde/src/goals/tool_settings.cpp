@@ -20,7 +20,7 @@ double pose_difference(const std::vector<double> & a, const std::vector<double> 
   std::copy_n(a.begin(), 6, first.begin());
   std::copy_n(b.begin(), 6, second.begin());
   const Vector6 offset = pose_trans(pose_inverse(first), second);
-  return std::max(std::hypot(offset[0], offset[1], offset[2]), std::hypot(offset[3], offset[4], offset[5]));
+  return std::max(length(position(offset)), length(rotation(offset)));
 }
 
 Sample with_payload(const Sample & sample)
@@ -60,8 +60,8 @@ bool has_payload(const Sample & sample, double mass, const Vector3 & center_of_g
   const Vector3 & reported = sample.payload_cog;
   const Vector3 & expected = center_of_gravity;
   return std::isnan(sample.payload) || (std::abs(sample.payload - mass) < tolerance &&
-                                        std::hypot(reported[0] - expected[0], reported[1] - expected[1],
-                                                   reported[2] - expected[2]) < tolerance);
+                                        length(reported[0] - expected[0], reported[1] - expected[1],
+                                               reported[2] - expected[2]) < tolerance);
 }
 
 std::vector<double> to_ur_center_of_gravity(const Vector3 & center_of_gravity)

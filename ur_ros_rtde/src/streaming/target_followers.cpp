@@ -182,8 +182,8 @@ class PoseFollower : public TargetFollower {
   Status set_target(const StreamTarget & target, double period) override
   {
     const Vector6 displacement = pose_trans(pose_inverse(at_), target.values);
-    const double distance = std::hypot(displacement[0], displacement[1], displacement[2]);
-    const double angle = std::hypot(displacement[3], displacement[4], displacement[5]);
+    const double distance = length(position(displacement));
+    const double angle = length(rotation(displacement));
     if (!(distance <= options_.max_linear_jump && angle <= options_.max_joint_jump)) {
       return failure(
           ErrorCode::invalid_goal,
@@ -228,12 +228,6 @@ class PoseFollower : public TargetFollower {
   LineDuration duration_;
 };
 
-/// NaN if one is: the hypot of three coordinates may lose it (libstdc++).
-double length(double x, double y, double z)
-{
-  return std::hypot(std::hypot(x, y), z);
-}
-
 class TwistFollower : public TargetFollower {
  public:
   explicit TwistFollower(const StreamOptions & options) : options_(options) {}
@@ -252,8 +246,8 @@ class TwistFollower : public TargetFollower {
 
   Status set_target(const StreamTarget & target, double) override
   {
-    const double linear = length(target.values[0], target.values[1], target.values[2]);
-    const double angular = length(target.values[3], target.values[4], target.values[5]);
+    const double linear = length(position(target.values));
+    const double angular = length(rotation(target.values));
     if (!(linear <= highest_linear_speed && angular <= highest_angular_speed)) {
       return failure(
           ErrorCode::invalid_goal,

@@ -1,6 +1,7 @@
 #include <ur_ros_rtde_msgs/action/set_gravity.hpp>
 
 #include "settings/setting_helpers.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 
@@ -10,7 +11,7 @@ class SetGravity : public Command<ur_ros_rtde_msgs::action::SetGravity> {
   void check(const Goal & goal, Check & check) const override
   {
     const auto & d = goal.direction;
-    check.in_range("the length of direction", std::hypot(d.x, d.y, d.z), 9.0, 11.0, "m/s^2");
+    check.in_range("the length of direction", length(d.x, d.y, d.z), 9.0, 11.0, "m/s^2");
   }
 
   Outcome run(const Goal & goal, Run & run) override

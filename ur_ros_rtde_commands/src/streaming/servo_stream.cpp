@@ -21,7 +21,7 @@ constexpr double lag_reserve = 0.1;    // s, beyond lookahead_time
 constexpr double stopped_rate = 0.01;  // the rate below which braking is not necessary
 constexpr std::chrono::milliseconds stop_planning_timeout{4};
 constexpr std::chrono::seconds package_timeout{1};
-constexpr double servo_stop_deceleration = 5.0;  // m/s^2; the arm is already at rest
+constexpr double servo_stop_deceleration = 5.0;  // rad/s^2; the arm is already at rest
 
 /// The motion at a rate of the time axis.
 JointMotion scaled(const trajectory::Point & point, const TimeScaling & time_scaling)

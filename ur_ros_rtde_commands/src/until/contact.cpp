@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <string_view>
+
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -128,7 +129,7 @@ Outcome move_until_contact(Run & run, const ContactMotion & motion,
     const Vector6 end = run.state().actual_tcp_pose;
     return Outcome::failure(ErrorCode::not_reached,
                             fmt::format("no contact within {} m: the TCP moved {:.3f} m", motion.distance,
-                                        std::hypot(end[0] - start[0], end[1] - start[1], end[2] - start[2])));
+                                        length(end[0] - start[0], end[1] - start[1], end[2] - start[2])));
   }
   return Outcome::success();
 }

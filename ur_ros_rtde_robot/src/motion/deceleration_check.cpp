@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ur_ros_rtde_robot/state/conversions.hpp"
+
 namespace ur_ros_rtde {
 
 DecelerationCheck::Speeds DecelerationCheck::speeds(const Sample & sample)
@@ -13,8 +15,7 @@ DecelerationCheck::Speeds DecelerationCheck::speeds(const Sample & sample)
     constexpr double unknown = std::numeric_limits<double>::infinity();
     result.joint = std::max(result.joint, std::isnan(velocity) ? unknown : std::abs(velocity));
   }
-  const auto & v = sample.target_tcp_speed;
-  result.tcp = std::hypot(v[0], v[1], v[2]);
+  result.tcp = length(position(sample.target_tcp_speed));
   return result;
 }
 

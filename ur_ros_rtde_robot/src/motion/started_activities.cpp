@@ -11,12 +11,13 @@ namespace {
 
 using Control = ur_rtde::RTDEControlInterface;
 
-constexpr std::array<std::pair<std::uint32_t, Activity>, 11> motions_of_ur_rtde{
+constexpr std::array<std::pair<std::uint32_t, Activity>, 12> motions_of_ur_rtde{
     {{Control::MOTION_MOVE_JOINT, Activity::joint_move},
      {Control::MOTION_MOVE_LINEAR, Activity::linear_move},
      {Control::MOTION_SPEED_JOINT, Activity::joint_speed},
      {Control::MOTION_SPEED_LINEAR, Activity::linear_speed},
-     {Control::MOTION_SERVO, Activity::servo},
+     {Control::MOTION_SERVO_JOINT, Activity::joint_servo},
+     {Control::MOTION_SERVO_LINEAR, Activity::linear_servo},
      {Control::MOTION_JOG, Activity::jog},
      {Control::MOTION_TORQUE, Activity::torque},
      {Control::MOTION_FORCE, Activity::force_mode},

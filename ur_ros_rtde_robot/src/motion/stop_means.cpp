@@ -10,6 +10,7 @@
 #include "connection/skew.hpp"
 #include "motion/deceleration_check.hpp"
 #include "motion/motion_stopper.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -32,9 +33,9 @@ constexpr double compile_timeout = 3.0;
 /// The samples reflect commands with a delay of some cycles.
 constexpr std::uint64_t sample_delay = 5;
 
-constexpr Activities joint_motions = Activity::joint_move | Activity::joint_speed;
+constexpr Activities joint_motions = Activity::joint_move | Activity::joint_speed | Activity::joint_servo;
 constexpr Activities linear_motions =
-    Activity::linear_move | Activity::linear_speed | Activity::servo | Activity::jog;
+    Activity::linear_move | Activity::linear_speed | Activity::linear_servo | Activity::jog;
 /// stopJ and stopL end the contact detection too, with a contact that it has detected and not executed.
 constexpr Activities motions = joint_motions | linear_motions | Activity::contact_detection;
 
@@ -83,9 +84,8 @@ double deceleration_timeout(const Sample & sample, const StopOptions & options)
   for (const double velocity : sample.target_qd) {
     joint = std::max(joint, std::abs(velocity));
   }
-  const auto & v = sample.target_tcp_speed;
   const double expected = std::max(joint / options.joint_deceleration,
-                                   std::hypot(v[0], v[1], v[2]) / options.linear_deceleration);
+                                   length(position(sample.target_tcp_speed)) / options.linear_deceleration);
   return std::max(3.0, 1.0 + 1.5 * expected);
 }
 
@@ -174,7 +174,8 @@ Status MotionStopper::send_stop(Activities started, const StopOptions & options)
   return with_control(stop_cycles * cycle_time(), [&](Control & control) {
     constexpr std::uint32_t stopped = Control::MOTION_MOVE_JOINT | Control::MOTION_MOVE_LINEAR |
                                       Control::MOTION_SPEED_JOINT | Control::MOTION_SPEED_LINEAR |
-                                      Control::MOTION_SERVO | Control::MOTION_JOG | Control::MOTION_CONTACT;
+                                      Control::MOTION_SERVO_JOINT | Control::MOTION_SERVO_LINEAR |
+                                      Control::MOTION_JOG | Control::MOTION_CONTACT;
     if (stops_in_joint_space_) {
       control.stopJ(options.joint_deceleration, true);
     } else {

@@ -11,11 +11,6 @@ namespace {
 
 constexpr double shortest_quaternion = 1e-6;
 
-double norm(const Vector3 & v)
-{
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 Vector3 cross(const Vector3 & a, const Vector3 & b)
 {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -47,7 +42,7 @@ Vector3 to_rotation_vector(const Quaternion & q)
 {
   const double sign = q.w < 0.0 ? -1.0 : 1.0;
   const Vector3 axis{sign * q.x, sign * q.y, sign * q.z};
-  const double sine = norm(axis);
+  const double sine = length(axis);
   // 2 atan(s / c) / s -> 2 as s -> 0
   const double scale = sine < 1e-12 ? 2.0 : 2.0 * std::atan2(sine, sign * q.w) / sine;
   return {scale * axis[0], scale * axis[1], scale * axis[2]};
@@ -76,7 +71,7 @@ Expected<Vector3> rotation_vector(const Quaternion & rotation)
 
 Quaternion quaternion(const Vector3 & rotation_vector)
 {
-  const double angle = norm(rotation_vector);
+  const double angle = length(rotation_vector);
   // sin(a/2)/a -> 1/2 as a -> 0
   const double scale = angle < 1e-8 ? 0.5 : std::sin(0.5 * angle) / angle;
   const double w = std::cos(0.5 * angle);

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 json registers_to_json(const Registers & registers)
 {
-  return {{"integers", registers.integers}, {"doubles", registers.doubles}};
+  return {{"integers", registers.integers}, {"doubles", registers.floats}};
 }
 
 Action state(RequestFields &)

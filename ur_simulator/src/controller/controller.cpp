@@ -128,7 +128,7 @@ std::shared_ptr<const urscript::Library> Controller::script_library()
 
 ProgramContext Controller::program_context()
 {
-  return {state_, *arm_, watchdog_, log_, script_library(), version_.cycle_time()};
+  return {state_, *arm_, *world_, watchdog_, log_, script_library(), version_.cycle_time()};
 }
 
 control_port::ControlPortContext Controller::control_port_context()

@@ -47,6 +47,7 @@ void ProgramRunner::start(urscript::Program program)
   stop("another program was started");
   context_.arm.resume();
   context_.arm.begin_program();
+  context_.world.begin_program();
   program_name_ = machine->program().name();
   program_ = std::move(machine);
   context_.state.runtime_state = RuntimeState::playing;

@@ -15,6 +15,7 @@
 #include "state/controller_state.hpp"
 #include "urscript/host.hpp"
 #include "urscript/machine.hpp"
+#include "world/world.hpp"
 
 namespace ur_simulator {
 
@@ -22,6 +23,7 @@ namespace ur_simulator {
 struct ProgramContext {
   ControllerState & state;
   Arm & arm;
+  World & world;
   Watchdog & watchdog;
   EventLog & log;
   std::shared_ptr<const urscript::Library> library;

@@ -36,7 +36,7 @@ void add_registers(std::vector<InputField> & fields)
     fields.push_back({fmt::format("input_int_register_{}", n), int32, min_version, n,
                       UR_INPUT(s.inputs.integers[i] = from.read_i32())});
     fields.push_back({fmt::format("input_double_register_{}", n), double_, min_version, n,
-                      UR_INPUT(s.inputs.doubles[i] = from.read_f64())});
+                      UR_INPUT(s.inputs.floats[i] = static_cast<float>(from.read_f64()))});
   }
 }
 

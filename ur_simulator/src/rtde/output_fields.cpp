@@ -76,11 +76,11 @@ void add_registers(std::vector<OutputField> & fields)
     add(fmt::format("output_int_register_{}", n), FieldType::int32, outputs, n,
         UR_OUTPUT(s.outputs.integers[i]));
     add(fmt::format("output_double_register_{}", n), FieldType::double_, outputs, n,
-        UR_OUTPUT(s.outputs.doubles[i]));
+        UR_OUTPUT(double{s.outputs.floats[i]}));
     add(fmt::format("input_int_register_{}", n), FieldType::int32, inputs, n,
         UR_OUTPUT(s.inputs.integers[i]));
     add(fmt::format("input_double_register_{}", n), FieldType::double_, inputs, n,
-        UR_OUTPUT(s.inputs.doubles[i]));
+        UR_OUTPUT(double{s.inputs.floats[i]}));
   }
 }
 

@@ -11,11 +11,12 @@
 namespace ur_simulator {
 
 /// The general purpose registers with which RTDE clients and the robot program exchange data. Sizes of
-/// PolyScope 5 (UR, "RTDE Guide").
+/// PolyScope 5 (UR, "RTDE Guide"). RTDE transfers the floats as doubles; the controller keeps 32 bits of
+/// them: 556.044 comes back as 556.04400634765625 (UR's forum, topic 7623).
 struct Registers {
   std::bitset<128> bits;
   std::array<std::int32_t, 48> integers{};
-  std::array<double, 48> doubles{};
+  std::array<float, 48> floats{};
 };
 
 /// The registers that exist for MODBUS clients and port functions of programs alone.

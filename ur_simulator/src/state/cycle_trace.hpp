@@ -87,7 +87,7 @@ class CycleTrace {
   {
     const std::int32_t code = state.inputs.integers[0];
     Target target{};
-    std::copy_n(state.inputs.doubles.begin(), target.size(), target.begin());
+    std::copy_n(state.inputs.floats.begin(), target.size(), target.begin());
     if (code != 0 && code == last_code_ && with_arguments) {
       repeats_.add({{state.cycle, now(), code}, target == last_target_});
     }

@@ -39,6 +39,13 @@ ForceTorqueSensor::ForceTorqueSensor(const RobotModel & model, std::uint64_t see
 {
 }
 
+void ForceTorqueSensor::begin_program()
+{
+  if (model_.has_force_torque_sensor()) {
+    zero();
+  }
+}
+
 void ForceTorqueSensor::set_noise(double force, double torque)
 {
   force_noise_ = force;

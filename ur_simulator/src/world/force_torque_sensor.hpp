@@ -21,6 +21,9 @@ class ForceTorqueSensor {
   ForceTorqueSensor(const RobotModel & model, std::uint64_t seed);
 
   void zero() { zero_requested_ = true; }
+  /// The controller zeroes its sensor when a program starts (Universal_Robots_ROS_Driver, issues 512 and
+  /// 643).
+  void begin_program();
   void set_noise(double force, double torque);
   /// Computes ft_raw_wrench, tool_wrench and actual_tcp_force from state.contact_wrench and the true load.
   void step(const Payload & load, ControllerState & state);

@@ -62,6 +62,8 @@ class World {
   /// zero_ftsensor(): the reading is relative to that of the next step from then on. RTDE's ft_raw_wrench is
   /// unaffected.
   void zero_sensor();
+  /// A program starts.
+  void begin_program() { sensor_.begin_program(); }
   /// Standard deviation of the sensor noise, N and N m; 0: no noise.
   void set_sensor_noise(double force, double torque);
   /// tool_contact(): see ContactDetector::cycles_since_contact(); the direction is in the base frame.

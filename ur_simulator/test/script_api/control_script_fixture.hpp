@@ -50,9 +50,10 @@ class ControlScriptTest : public ::testing::Test {
   void parameters(const Vector6 & six, std::initializer_list<double> more = {})
   {
     for (std::size_t i = 0; i < 6; ++i) {
-      fixture.state.inputs.doubles[i] = six[static_cast<Eigen::Index>(i)];
+      fixture.state.inputs.floats[i] = static_cast<float>(six[static_cast<Eigen::Index>(i)]);
     }
-    std::copy(more.begin(), more.end(), fixture.state.inputs.doubles.begin() + 6);
+    std::transform(more.begin(), more.end(), fixture.state.inputs.floats.begin() + 6,
+                   [](double value) { return static_cast<float>(value); });
   }
 
   /// Sends one command like ur_rtde: waits until the script reports `done`, then until it is ready again.

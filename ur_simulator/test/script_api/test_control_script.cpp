@@ -125,11 +125,11 @@ TEST_F(ControlScriptTest, AnswersQueries)
   parameters(fixture.state.target_tcp_pose);
   command(46);
   for (Eigen::Index i = 0; i < 6; ++i) {
-    EXPECT_NEAR(fixture.state.outputs.doubles[static_cast<std::size_t>(i)], fixture.state.target.position[i],
-                1e-8);
+    EXPECT_NEAR(fixture.state.outputs.floats[static_cast<std::size_t>(i)], fixture.state.target.position[i],
+                1e-6);
   }
   command(43);
-  EXPECT_NEAR(fixture.state.outputs.doubles[2], fixture.state.actual_tcp_pose[2], 1e-9);
+  EXPECT_NEAR(fixture.state.outputs.floats[2], fixture.state.actual_tcp_pose[2], 1e-7);
   parameters(fixture.state.target_tcp_pose);
   command(60);
   EXPECT_EQ(output(1), 1);
@@ -138,7 +138,7 @@ TEST_F(ControlScriptTest, AnswersQueries)
   command(47);
   EXPECT_EQ(output(1), 1);
   parameters(Vector6::Constant(0.0));
-  fixture.state.inputs.doubles[0] = 1.5;
+  fixture.state.inputs.floats[0] = 1.5F;
   command(17);
   EXPECT_EQ(fixture.state.payload.mass, 1.5);
   command(8);
@@ -196,18 +196,55 @@ TEST_F(ControlScriptTest, UsesFewInstructions)
   RecordProperty("instructions", static_cast<int>(fixture.machine->instructions()));
 }
 
-TEST_F(ControlScriptTest, StopsAtAContactThatIsDetectedDuringACommand)
+struct ContactDuringMotionTest : ControlScriptTest {
+  double contact_height = 0.0;
+
+  /// Puts a table below the tool and starts the contact detection.
+  void SetUp() override
+  {
+    constexpr std::int32_t start_contact_detection = 62;
+    constexpr double distance = 0.02;
+    ControlScriptTest::SetUp();
+    Surface table;
+    table.point = fixture.state.actual_tcp_pose.head<3>() - distance * Vector3::UnitZ();
+    fixture.world.surfaces().add(table);
+    contact_height = fixture.state.actual_tcp_pose[2] - distance;
+    parameters((Vector6() << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0).finished());
+    command(start_contact_detection);
+  }
+
+  void wait_for_contact()
+  {
+    const auto & messages = fixture.host.messages;
+    fixture.until([&] { return std::count(messages.begin(), messages.end(), "contact_thread finished") > 0; },
+                  5.0);
+  }
+};
+
+TEST_F(ContactDuringMotionTest, EndsAStream)
 {
-  constexpr std::int32_t start_contact_detection = 62;
+  constexpr std::int32_t speed_l = 10;
+  const Vector6 down = (Vector6() << 0.0, 0.0, -0.05, 0.0, 0.0, 0.0).finished();
+  parameters(down, {0.5, 0.0});
+  fixture.state.inputs.integers[0] = speed_l;
+  wait_for_contact();
+  fixture.cycles(1500);  // the command stays in the register
+  EXPECT_NEAR(fixture.state.target_tcp_pose[2], contact_height, 2e-3);
+  EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9);
+
+  fixture.state.inputs.integers[0] = 0;
+  fixture.cycles(2);
+  parameters(-down, {0.5, 0.0});
+  fixture.state.inputs.integers[0] = speed_l;
+  fixture.cycles(200);
+  EXPECT_NEAR(fixture.state.target_tcp_speed[2], 0.05, 1e-3) << "the next stream";
+  expect_running();
+}
+
+TEST_F(ContactDuringMotionTest, IsNoticedDuringACommand)
+{
   constexpr std::int32_t read_contact_detection = 64;
   constexpr std::int32_t move_l = 3;
-  constexpr double distance = 0.02;
-  Surface table;
-  table.point = fixture.state.actual_tcp_pose.head<3>() - distance * Vector3::UnitZ();
-  fixture.world.surfaces().add(table);
-  const double contact_height = fixture.state.actual_tcp_pose[2] - distance;
-  parameters((Vector6() << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0).finished());
-  command(start_contact_detection);
   Vector6 target = fixture.state.target_tcp_pose;
   target[2] -= 0.06;
   parameters(target, {0.05, 0.5});
@@ -216,9 +253,7 @@ TEST_F(ControlScriptTest, StopsAtAContactThatIsDetectedDuringACommand)
 
   // A late host clears its command only after the contact.
   fixture.state.inputs.integers[0] = read_contact_detection;
-  const auto & messages = fixture.host.messages;
-  fixture.until([&] { return std::count(messages.begin(), messages.end(), "contact_thread finished") > 0; },
-                5.0);
+  wait_for_contact();
   fixture.cycles(2);
   fixture.state.inputs.integers[0] = 0;
   fixture.cycles(1500);

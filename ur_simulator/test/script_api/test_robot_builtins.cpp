@@ -10,7 +10,7 @@ TEST(RegisterTest, AreReadAndWrittenWithinTheirRange)
 {
   ScriptFixture fixture;
   fixture.state.inputs.integers[3] = 42;
-  fixture.state.inputs.doubles[47] = 0.5;
+  fixture.state.inputs.floats[47] = 0.5F;
   fixture.state.inputs.bits[127] = true;
   EXPECT_EQ(fixture.error_of(R"(def test():
     write_output_integer_register(0, read_input_integer_register(3) + 1)
@@ -20,9 +20,11 @@ TEST(RegisterTest, AreReadAndWrittenWithinTheirRange)
   end)"),
             "");
   EXPECT_EQ(fixture.state.outputs.integers[0], 43);
-  EXPECT_EQ(fixture.state.outputs.doubles[24], 0.5);
+  EXPECT_EQ(fixture.state.outputs.floats[24], 0.5F);
   EXPECT_TRUE(fixture.state.outputs.bits[64]);
   EXPECT_EQ(fixture.global("x"), "43");
+  EXPECT_EQ(fixture.error_of("write_output_float_register(0, 556.044)"), "");
+  EXPECT_EQ(fixture.state.outputs.floats[0], 556.04400634765625);  // measured on a controller
   EXPECT_EQ(fixture.error_of("write_output_integer_register(48, 1)"),
             "write_output_integer_register: address must be in [0, 47], is 48");
   EXPECT_EQ(fixture.error_of("write_output_integer_register(0, 0.5)"),

@@ -13,7 +13,7 @@ constexpr int servo_j = 11;
 constexpr int servo_stop = 16;
 constexpr int bridged_cycles = 5;   // the longest gap that the script bridges; the sender skips the rest
 constexpr double step = 0.001;      // rad in one cycle, 0.5 rad/s
-constexpr double tolerance = 1e-9;  // rad
+constexpr double tolerance = 1e-6;  // rad; registers have 32 bits
 constexpr std::size_t ahead_register = 12;
 
 /// A sender that answers each cycle with a setpoint, and a connection that delays it.
@@ -41,7 +41,7 @@ struct ServoSetpointsTest : ControlScriptTest {
     fixture.state.inputs.integers[0] = servo_j;
   }
   /// Time of the target after that of the newest setpoint.
-  double ahead() const { return fixture.state.outputs.doubles[ahead_register]; }
+  double ahead() const { return fixture.state.outputs.floats[ahead_register]; }
   double target() const { return fixture.machine->global("servo_target")->vector6()->coeff(5); }
 
   /// Moves for `cycles`, more slowly while the target is behind. Returns its distance in each cycle, in

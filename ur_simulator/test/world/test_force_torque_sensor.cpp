@@ -47,6 +47,17 @@ TEST(ForceTorqueSensorTest, ReportsTheForceAtTheTcpInTheBaseFrame)
       << "unless an external sensor measures it";
 }
 
+TEST(ForceTorqueSensorTest, IsZeroedByTheStartOfAProgram)
+{
+  RobotFixture fixture;
+  fixture.world.attach_load(load_of(2.0, Vector3(0.0, 0.0, 0.05)));
+  fixture.run(0.1);
+  EXPECT_LT(fixture.state.actual_tcp_force[2], -10.0);
+  fixture.world.begin_program();
+  fixture.run(0.1);
+  EXPECT_LT(fixture.state.actual_tcp_force.norm(), 1e-3);
+}
+
 TEST(ForceTorqueSensorTest, ReportsTheWeightOfALoadThatIsNotInThePayload)
 {
   RobotFixture fixture;

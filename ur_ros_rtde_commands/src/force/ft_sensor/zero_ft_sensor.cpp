@@ -1,8 +1,8 @@
-#include <cmath>
 #include <ur_ros_rtde_msgs/action/zero_ft_sensor.hpp>
 
 #include "ur_ros_rtde/check_result.hpp"
 #include "ur_ros_rtde/command.hpp"
+#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -20,8 +20,7 @@ class ZeroFtSensor : public Command<ur_ros_rtde_msgs::action::ZeroFtSensor> {
     check_result(run.control()->zeroFtSensor(), "zero the sensor");
     const auto newest = run.state().sequence;  // may be older than the command
     const auto reads_zero = [&] {
-      const Vector6 f = run.flange_force();
-      return run.state().sequence > newest + 1 && std::hypot(f[0], f[1], f[2]) < zero_tolerance;
+      return run.state().sequence > newest + 1 && length(position(run.flange_force())) < zero_tolerance;
     };
     const Outcome outcome =
         run.expect(reads_zero, std::chrono::seconds(1), "the sensor does not read zero afterwards");

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <numbers>
 #include <ur_ros_rtde_msgs/action/move_l_relative.hpp>
 
@@ -24,10 +23,6 @@ std::vector<double> relative_target(const Vector6 & start,
   return {pose.begin(), pose.end()};
 }
 
-double rotation_angle(const geometry_msgs::msg::Vector3 & rotation)
-{
-  return std::hypot(rotation.x, rotation.y, rotation.z);
-}
 }  // namespace
 
 class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
@@ -35,8 +30,9 @@ class MoveLRelative : public Command<ur_ros_rtde_msgs::action::MoveLRelative> {
   {
     check.in_range("frame", goal.frame, Goal::BASE, Goal::TOOL)
         .vector("translation", goal.translation, 3.0, "m")
-        .vector("rotation", goal.rotation, std::numbers::pi, "rad")  // rejects NaN, which std::hypot may lose
-        .in_range("the length of rotation", rotation_angle(goal.rotation), 0.0, std::numbers::pi, "rad");
+        .vector("rotation", goal.rotation, std::numbers::pi, "rad")
+        .in_range("the length of rotation", length(goal.rotation.x, goal.rotation.y, goal.rotation.z), 0.0,
+                  std::numbers::pi, "rad");
     check_speed(check, goal, linear_speed_limits);
     if (const auto start = check.start()) {
       check.reachable("the target of translation and rotation",

@@ -28,7 +28,7 @@ Check & check_servo(Check & check, const Goal & goal)
   return check_servo_deceleration(check, goal);
 }
 
-/// Includes the linear deceleration, because the control script stops servo motion along the path of the TCP.
+/// The setpoints of joints stop in joint space, those of poses along the path of the TCP.
 template <typename Goal>
 StopOptions servo_stop_options(const Goal & goal)
 {

@@ -36,7 +36,7 @@ double smooth_step(double u)
 PoseDistance pose_distance(const Vector6 & from, const std::vector<double> & to)
 {
   const Vector6 offset = relative_pose(from, to);
-  return {std::hypot(offset[0], offset[1], offset[2]), std::hypot(offset[3], offset[4], offset[5])};
+  return {length(position(offset)), length(rotation(offset))};
 }
 
 double default_joint_duration(const Vector6 & from, const std::vector<double> & to)

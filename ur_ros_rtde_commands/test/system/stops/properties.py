@@ -143,7 +143,7 @@ class Checks:
 
     def _space(self) -> str:
         if self._case.kind.space == PATH:
-            return PATH if self._brakes_along_path() else LINEAR
+            return PATH if self._brakes_along_path() else JOINT
         return self._case.kind.space
 
     def _column(self) -> int:

@@ -11,7 +11,8 @@ enum class Activity : std::uint32_t {
   linear_move = 1U << 1U,  ///< moveL, paths, the motion of an asynchronous stop
   joint_speed = 1U << 2U,
   linear_speed = 1U << 3U,
-  servo = 1U << 4U,
+  joint_servo = 1U << 4U,    ///< servoJ
+  linear_servo = 1U << 14U,  ///< servoL, servoC
   jog = 1U << 5U,
   torque = 1U << 6U,
   extension = 1U << 7U,

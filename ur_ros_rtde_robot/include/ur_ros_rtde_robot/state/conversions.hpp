@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "ur_ros_rtde_robot/state/sample.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -18,6 +20,16 @@ struct Quaternion {
 Expected<Vector3> rotation_vector(const Quaternion & rotation);
 /// The unit quaternion with w >= 0 of a rotation vector of any length. NaN yields NaN.
 Quaternion quaternion(const Vector3 & rotation_vector);
+
+/// NaN if a coordinate is: the hypot of three numbers of libstdc++ may lose it.
+inline double length(double x, double y, double z)
+{
+  return std::hypot(std::hypot(x, y), z);
+}
+inline double length(const Vector3 & v)
+{
+  return length(v[0], v[1], v[2]);
+}
 
 /// Position and rotation vector of a UR pose.
 inline Vector3 position(const Vector6 & pose)

@@ -27,11 +27,11 @@ constexpr RegisterType register_types[] = {
          bank.integers[i] = value;
        }
      }},
-    {"float", 48, [](const Registers & bank, std::size_t i) { return Value(bank.doubles[i]); },
+    {"float", 48, [](const Registers & bank, std::size_t i) { return Value(double{bank.floats[i]}); },
      [](Registers & bank, std::size_t i, ArgumentReader & reader) {
        const double value = reader.number(1, "value");
        if (reader) {
-         bank.doubles[i] = value;
+         bank.floats[i] = static_cast<float>(value);
        }
      }},
 };
