@@ -64,7 +64,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
       model(options.address, options.model, log),
-      control_scripts(options.upper_range_registers, log),
+      control_scripts(options.upper_range_registers, options.control_mode, log),
       interfaces(options, control_scripts, log),
       registers(options, interfaces),
       activities(interfaces, registers, tracker),
@@ -309,7 +309,7 @@ void Robot::Impl::end_program()
     // It may have ended by itself.
   }
   if (!ended && interfaces.watchdog_frequency() == 0.0) {
-    std::ignore = stop_program(options.address);  // nothing else would end it
+    std::ignore = stop_program(options.address, std::chrono::milliseconds(500));  // nothing else would end it
   }
 }
 

@@ -100,7 +100,8 @@ std::string Log::text() const
   return all;
 }
 
-OtherService::OtherService(std::uint16_t port, std::string reply) : reply_(std::move(reply))
+OtherService::OtherService(std::uint16_t port, std::string reply, bool listens_first)
+    : reply_(std::move(reply))
 {
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const int on = 1;
@@ -113,12 +114,16 @@ OtherService::OtherService(std::uint16_t port, std::string reply) : reply_(std::
       ::listen(listener_, 8) != 0) {
     ADD_FAILURE() << "cannot listen on port " << port;
   }
-  thread_ = std::jthread([this](const std::stop_token & stop) {
+  thread_ = std::jthread([this, listens_first](const std::stop_token & stop) {
     std::vector<int> clients;
     while (!stop.stop_requested()) {
       pollfd entry{listener_, POLLIN, 0};
       if (::poll(&entry, 1, 10) > 0) {
         const int client = ::accept(listener_, nullptr, nullptr);
+        pollfd line{client, POLLIN, 0};
+        if (listens_first && ::poll(&line, 1, 5000) <= 0) {
+          ADD_FAILURE() << "nothing was sent to the service";
+        }
         ::send(client, reply_.data(), reply_.size(), MSG_NOSIGNAL);
         clients.push_back(client);
       }

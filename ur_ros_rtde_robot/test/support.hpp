@@ -63,7 +63,8 @@ class Log {
 /// A server that sends `reply` on each connection and ignores its input.
 class OtherService {
  public:
-  OtherService(std::uint16_t port, std::string reply);
+  /// With `listens_first`, it replies to the first line only.
+  OtherService(std::uint16_t port, std::string reply, bool listens_first = false);
   ~OtherService();
 
  private:

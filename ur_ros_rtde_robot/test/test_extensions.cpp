@@ -45,7 +45,7 @@ TEST_F(ExtensionsTest, AMissingUrcapIsOneLineOfInformationForAllCommandsThatNeed
   start_with(
       {of_urcap("close", "feeder_close(1)"), of_urcap("open", "feeder_open(1)"), of_urcap("wait", "sync()")});
   EXPECT_EQ(log.count("the Feeder URCap (for close, open)"), 1U) << log.text();
-  EXPECT_EQ(log.count("[info] not installed on this robot"), 1U) << log.text();
+  EXPECT_EQ(log.count("[info] unknown in programs of the driver"), 1U) << log.text();
   EXPECT_EQ(log.count("[error]"), 0U) << log.text();
   EXPECT_TRUE(robot->has_extension("wait"));
   const auto rejected = robot->has_extension("open");

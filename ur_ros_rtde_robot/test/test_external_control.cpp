@@ -121,6 +121,28 @@ TEST_F(ExternalControlTest, LeavesCodeOutThatIsIncompleteInThisVersionOfTheContr
   EXPECT_FALSE(robot->has_extension("half"));
 }
 
+/// PolyScope would not start a program with an unknown function.
+TEST_F(ExternalControlTest, HasTheExtensionsOfAUrcapOnlyIfTheUserSaysThatItIsInstalled)
+{
+  controller.start();
+  controller.control({{"command", "store_external_control"}, {"host", own_address()}, {"port", port}});
+  robot = std::make_unique<Robot>(options(), log.function());
+  ScriptExtension feeder;
+  feeder.name = "feeder";
+  feeder.snippet = "feeder_open()";
+  feeder.urcap = "the Feeder URCap";
+  feeder.urcap_functions = {"feeder_open"};
+  ASSERT_TRUE(robot->set_extensions({feeder}).empty());
+  robot->start();
+  ASSERT_TRUE(waits_for_play());
+  play();
+  ASSERT_TRUE(becomes_ready()) << log.text();
+  const auto rejected = robot->has_extension("feeder");
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().message.find("name feeder in the parameter plugins"), std::string::npos)
+      << rejected.error().message;
+}
+
 TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
 {
   start(options());

@@ -272,7 +272,8 @@ TEST(MotionBlockerTest, NamesEverySafetyStopWithTheRemedy)
       {6, ErrorCode::emergency_stop, "release the button, then make_ready"},
       {7, ErrorCode::emergency_stop, "release the button, then make_ready"},
       {8, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"},
-      {9, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"}};
+      {9, ErrorCode::safety_violation, "make_ready with restart_safety: true (or dashboard/restart_safety"},
+      {10, ErrorCode::safeguard_stop, "the cause that the pendant shows"}};
   for (const auto & [bit, code, advice] : table) {
     auto sample = running_robot();
     sample.safety_status_bits = 1U << bit;

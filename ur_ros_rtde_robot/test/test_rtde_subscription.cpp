@@ -177,6 +177,13 @@ TEST_F(DashboardRequestTest, EndsAtItsLimitAndWhenStopped)
   EXPECT_EQ(stopped.error().code, ErrorCode::canceled);
 }
 
+/// A busy controller greets late.
+TEST_F(DashboardRequestTest, SendsTheLineBeforeTheGreeting)
+{
+  const OtherService late(29999, "Connected: Universal Robots Dashboard Server\nStopped\n", true);
+  EXPECT_EQ(send("stop").value_or("nothing"), "Stopped");
+}
+
 TEST_F(DashboardRequestTest, ASessionUsesOneConnection)
 {
   controller.start();

@@ -106,7 +106,7 @@ Run::Target Run::Target::pose(const std::vector<double> & pose)
 {
   const auto offset = [target = to_array(pose)](const Sample & sample) {
     const Vector6 d = pose_trans(pose_inverse(sample.actual_tcp_pose), target);
-    return std::pair{length(position(d)), length(rotation(d))};
+    return std::pair{length(ur_ros_rtde::position(d)), length(rotation(d))};
   };
   return {[offset](const Sample & sample) {
             const auto [distance, angle] = offset(sample);

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 namespace ur_ros_rtde {
-namespace {
-constexpr std::chrono::milliseconds answer_timeout{2000};
-}  // namespace
 
-std::string send_to_dashboard(DashboardSession & dashboard, const std::string & line)
+std::string send_to_dashboard(DashboardSession & dashboard, const std::string & line,
+                              std::chrono::milliseconds timeout)
 {
-  const auto answer = dashboard.request(line, answer_timeout);
+  const auto answer = dashboard.request(line, timeout);
   if (!answer) {
     throw RobotError({answer.error().code, fmt::format("the dashboard server did not answer \"{}\": {}", line,
                                                        answer.error().message)});
@@ -24,9 +22,10 @@ std::string query_dashboard(DashboardSession & dashboard, const std::string & qu
   return colon == std::string::npos ? answer : answer.substr(colon + 2);
 }
 
-Status command_dashboard(DashboardSession & dashboard, const std::string & line, const std::string & reply)
+Status command_dashboard(DashboardSession & dashboard, const std::string & line, const std::string & reply,
+                         std::chrono::milliseconds timeout)
 {
-  const std::string answer = send_to_dashboard(dashboard, line);
+  const std::string answer = send_to_dashboard(dashboard, line, timeout);
   if (answer.rfind(reply, 0) == 0) {
     return {};
   }

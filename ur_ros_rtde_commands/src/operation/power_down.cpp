@@ -19,12 +19,14 @@ class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
   Outcome run(const Goal & goal, Run & run) override
   {
     constexpr std::chrono::seconds stop_timeout{1};
+    constexpr std::chrono::seconds power_off_timeout{10};  // PolyScope 5 answers after 1 s
     if (const auto stopped = run.wait_for_stop(); !stopped) {
       run.warn(stopped.error().message);  // all the more reason to power off
     }
     DashboardSession dashboard(run.robot().address());
     std::ignore = dashboard.request("stop", stop_timeout);  // the power off does not depend on it
-    if (const Status status = command_dashboard(dashboard, "power off", "Powering off"); !status) {
+    if (const Status status = command_dashboard(dashboard, "power off", "Powering off", power_off_timeout);
+        !status) {
       return status;
     }
     return run_steps(run, goal.timeout, [&]() -> std::string {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "operation/dashboard_helpers.hpp"
 
 namespace ur_ros_rtde {
@@ -45,7 +47,20 @@ void StartupSequence::close_popups()
   }
 }
 
+/// A controller that is busy, for example with new firmware of the joints, answers late.
 std::string StartupSequence::step()
+{
+  try {
+    return next_step();
+  } catch (const RobotError & error) {
+    if (error.error().code != ErrorCode::timeout) {
+      throw;
+    }
+    return "waiting for the dashboard server to answer";
+  }
+}
+
+std::string StartupSequence::next_step()
 {
   dashboard_ = DashboardSession(robot_.address());  // with the control mode, local or remote, of now
   // The newest package may be older than a change of the robot mode, so the dashboard server is queried, too.
@@ -77,15 +92,15 @@ std::string StartupSequence::leave_safety_stop(const std::string & mode)
   if (mode == "VIOLATION" || mode == "FAULT") {
     return restart_safety(mode);
   }
-  if (mode == "ROBOT_EMERGENCY_STOP" || mode == "SYSTEM_EMERGENCY_STOP") {
+  const auto is_a = [&mode](std::string_view kind) { return mode.find(kind) != std::string::npos; };
+  if (is_a("EMERGENCY_STOP")) {
     require_operator(
         ErrorCode::emergency_stop,
         fmt::format("the robot is in an emergency stop ({}): find the cause, release the button, then try "
                     "again",
                     mode));
   }
-  if (mode == "SAFEGUARD_STOP" || mode == "AUTOMATIC_MODE_SAFEGUARD_STOP" ||
-      mode == "SYSTEM_THREE_POSITION_ENABLING_STOP") {
+  if (is_a("SAFEGUARD_STOP") || is_a("ENABLING_STOP") || is_a("IO_PLANE_STOP")) {
     require_operator(
         ErrorCode::safeguard_stop,
         fmt::format("the robot is in a safeguard stop ({}): close the guard or reset the safeguard "

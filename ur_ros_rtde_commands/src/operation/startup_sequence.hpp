@@ -30,6 +30,7 @@ class StartupSequence {
  private:
   using Clock = std::chrono::steady_clock;
 
+  std::string next_step();
   std::string leave_safety_stop(const std::string & mode);
   std::string unlock_protective_stop();
   std::string restart_safety(const std::string & mode);

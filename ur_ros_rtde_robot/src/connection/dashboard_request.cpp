@@ -23,9 +23,9 @@ bool may_play(const std::string & address)
   return !answer || (!answer->starts_with("STOPPED") && !answer->starts_with("PAUSED"));
 }
 
-Status stop_program(const std::string & address)
+Status stop_program(const std::string & address, std::chrono::milliseconds timeout)
 {
-  const auto answer = dashboard_request(address, "stop", answer_timeout, {});
+  const auto answer = dashboard_request(address, "stop", timeout, {});
   if (!answer) {
     return tl::unexpected(answer.error());
   }

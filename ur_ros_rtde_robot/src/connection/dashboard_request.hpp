@@ -18,7 +18,9 @@ Expected<std::string> dashboard_request(const std::string & address, const std::
 /// Returns whether a program plays on the robot; true if the dashboard server does not tell.
 bool may_play(const std::string & address);
 
-/// Stops the program that runs on the robot. Fails with the robot's answer if it does not.
-Status stop_program(const std::string & address);
+/// Stops the program that runs on the robot. Fails with the robot's answer if it does not; timeout if the
+/// robot has not answered `timeout` after the request, which it may still execute. It answers when the
+/// program has ended.
+Status stop_program(const std::string & address, std::chrono::milliseconds timeout);
 
 }  // namespace ur_ros_rtde

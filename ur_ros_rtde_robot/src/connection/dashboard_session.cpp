@@ -53,7 +53,7 @@ Expected<std::string> DashboardSession::next_line(WaitLimit wait_limit)
   }
 }
 
-Status DashboardSession::connect(const WaitLimit & wait_limit)
+Status DashboardSession::open(const WaitLimit & wait_limit)
 {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(wait_limit.deadline - Clock::now());
   auto socket = TcpSocket::connect(address_, dashboard_port, std::min(left, connect_timeout));
@@ -62,22 +62,28 @@ Status DashboardSession::connect(const WaitLimit & wait_limit)
   }
   socket_ = std::move(*socket);
   received_.clear();
-  return next_line(wait_limit).map([](const std::string &) {});  // the greeting
+  return {};
 }
 
-Expected<std::string> DashboardSession::send(const std::string & line, const WaitLimit & wait_limit)
+Status DashboardSession::write(const std::string & line, const WaitLimit & wait_limit)
 {
-  const Status sent = socket_->write(line + "\n", wait_limit.deadline);
-  return sent ? next_line(wait_limit) : tl::unexpected(sent.error());
+  return socket_->write(line + "\n", wait_limit.deadline);
 }
 
+Status DashboardSession::greeting(const WaitLimit & wait_limit)
+{
+  return next_line(wait_limit).map([](const std::string &) {});
+}
+
+/// Does not wait for the greeting before it sends: a busy controller may greet late.
 Expected<std::string> DashboardSession::ask(const std::string & line, const WaitLimit & wait_limit)
 {
-  Status ready;
-  if (!socket_ || !received_.empty()) {  // what has arrived does not answer this request
-    ready = connect(wait_limit);
-  }
-  auto answer = ready ? send(line, wait_limit) : Expected<std::string>(tl::unexpected(ready.error()));
+  const auto next = [&] { return next_line(wait_limit); };
+  const bool is_new = !socket_ || !received_.empty();  // what has arrived does not answer this request
+  auto answer = (is_new ? open(wait_limit) : Status())
+                    .and_then([&] { return write(line, wait_limit); })
+                    .and_then([&] { return is_new ? greeting(wait_limit) : Status(); })
+                    .and_then(next);
   if (!answer) {
     socket_.reset();
   }
@@ -98,7 +104,8 @@ Expected<std::string> DashboardSession::request(const std::string & line, std::c
 
 Status DashboardSession::connect(std::chrono::milliseconds timeout, const std::stop_token & stop)
 {
-  return connect(WaitLimit{Clock::now() + timeout, stop});
+  const WaitLimit wait_limit{Clock::now() + timeout, stop};
+  return open(wait_limit).and_then([&] { return greeting(wait_limit); });
 }
 
 Expected<std::string> DashboardSession::request_once(const std::string & line,
@@ -106,7 +113,8 @@ Expected<std::string> DashboardSession::request_once(const std::string & line,
                                                      const std::stop_token & stop,
                                                      std::chrono::milliseconds grace)
 {
-  return send(line, WaitLimit{Clock::now() + timeout, stop, grace});
+  const WaitLimit wait_limit{Clock::now() + timeout, stop, grace};
+  return write(line, wait_limit).and_then([&] { return next_line(wait_limit); });
 }
 
 }  // namespace ur_ros_rtde

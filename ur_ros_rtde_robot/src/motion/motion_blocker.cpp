@@ -37,6 +37,13 @@ std::optional<Error> safety_blocker(const Sample & sample)
         ErrorCode::safety_violation,
         "the robot is in recovery mode, outside its safety limits: move it back inside on the pendant"};
   }
+  if (safety.stopped_due_to_safety) {  // by PROFIsafe, an enabling device, a safety plane of an input, ...
+    return Error{
+        ErrorCode::safeguard_stop,
+        fmt::format("the safety system has stopped the robot ({}): remove the cause that the pendant "
+                    "shows",
+                    to_string(sample.safety_mode))};
+  }
   return std::nullopt;
 }
 

@@ -238,13 +238,21 @@ Status MotionStopper::end_modes(Activities started)
   return {};
 }
 
+/// Success also without an answer in time: the end of the program is what counts.
+Status MotionStopper::request_program_stop() const
+{
+  constexpr milliseconds answer_timeout(500);
+  Status stopped = stop_program(options_.address, answer_timeout);
+  return !stopped && stopped.error().code == ErrorCode::timeout ? Status() : stopped;
+}
+
 Status MotionStopper::stop_by_dashboard(const StopOptions & options)
 {
   const auto before = tracker_.view();
   activities_.fence_script();
   const bool may_begin =
       !before.program_running && activities_.now().contains(Activity::script);  // a script, after the stop
-  const Status ended = may_begin ? stop_script(before) : stop_program(options_.address);
+  const Status ended = may_begin ? stop_script(before) : request_program_stop();
   if (!ended) {
     return ended;
   }
@@ -269,9 +277,9 @@ Status MotionStopper::stop_script(const MotionTracker::View & before)
     return view.program_running || view.program != before.program || activities_.script_compiled() ||
            !has_script();
   };
-  Status stopped = stop_program(options_.address);
+  Status stopped = request_program_stop();
   if (stopped && !begun && has_script() && wait_for(compile_timeout, begins) && has_script()) {
-    stopped = stop_program(options_.address);
+    stopped = request_program_stop();
   }
   if (!stopped) {
     return stopped;

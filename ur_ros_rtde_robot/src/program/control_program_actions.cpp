@@ -195,7 +195,8 @@ Status ControlProgramManager::end_program()
 {
   const auto runtime = receiver_.latest().value_or(Sample{}).runtime_state;
   if (runtime != RuntimeState::stopped) {
-    if (auto sent = stop_program(options_.address); !sent) {
+    constexpr milliseconds answer_timeout(2000);
+    if (auto sent = stop_program(options_.address, answer_timeout); !sent) {
       return failure(ErrorCode::program_stopped,
                      fmt::format("a program of the robot ({}) cannot be stopped: {}", to_string(runtime),
                                  sent.error().message));

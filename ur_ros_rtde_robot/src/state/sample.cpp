@@ -56,6 +56,28 @@ const char * to_string(SafetyMode mode)
       return "VALIDATE_JOINT_ID";
     case SafetyMode::undefined:
       return "UNDEFINED";
+    case SafetyMode::automatic_mode_safeguard_stop:
+      return "AUTOMATIC_MODE_SAFEGUARD_STOP";
+    case SafetyMode::system_three_position_enabling_stop:
+      return "SYSTEM_THREE_POSITION_ENABLING_STOP";
+    case SafetyMode::tp_three_position_enabling_stop:
+      return "TP_THREE_POSITION_ENABLING_STOP";
+    case SafetyMode::immi_emergency_stop:
+      return "IMMI_EMERGENCY_STOP";
+    case SafetyMode::immi_safeguard_stop:
+      return "IMMI_SAFEGUARD_STOP";
+    case SafetyMode::profisafe_waiting_for_parameters:
+      return "PROFISAFE_WAITING_FOR_PARAMETERS";
+    case SafetyMode::profisafe_automatic_mode_safeguard_stop:
+      return "PROFISAFE_AUTOMATIC_MODE_SAFEGUARD_STOP";
+    case SafetyMode::profisafe_safeguard_stop:
+      return "PROFISAFE_SAFEGUARD_STOP";
+    case SafetyMode::profisafe_emergency_stop:
+      return "PROFISAFE_EMERGENCY_STOP";
+    case SafetyMode::safety_api_safeguard_stop:
+      return "SAFETY_API_SAFEGUARD_STOP";
+    case SafetyMode::io_plane_stop:
+      return "IO_PLANE_STOP";
   }
   return "UNKNOWN";
 }

@@ -35,9 +35,10 @@ class DashboardSession {
     std::stop_token stop;
     std::chrono::milliseconds grace{};
   };
-  Status connect(const WaitLimit & wait_limit);
+  Status open(const WaitLimit & wait_limit);
+  Status greeting(const WaitLimit & wait_limit);
+  Status write(const std::string & line, const WaitLimit & wait_limit);
   Expected<std::string> ask(const std::string & line, const WaitLimit & wait_limit);
-  Expected<std::string> send(const std::string & line, const WaitLimit & wait_limit);
   Expected<std::string> next_line(WaitLimit wait_limit);
 
   std::string address_;

@@ -26,7 +26,7 @@ enum class RobotMode : std::int32_t {
   updating_firmware = 8,
 };
 
-/// RTDE's safety_mode.
+/// RTDE's safety_mode (ur_client_library and ur_dashboard_msgs have those from 12 on).
 enum class SafetyMode : std::int32_t {
   normal = 1,
   reduced = 2,
@@ -39,6 +39,17 @@ enum class SafetyMode : std::int32_t {
   fault = 9,
   validate_joint_id = 10,
   undefined = 11,
+  automatic_mode_safeguard_stop = 12,
+  system_three_position_enabling_stop = 13,
+  tp_three_position_enabling_stop = 14,
+  immi_emergency_stop = 15,
+  immi_safeguard_stop = 16,
+  profisafe_waiting_for_parameters = 17,
+  profisafe_automatic_mode_safeguard_stop = 18,
+  profisafe_safeguard_stop = 19,
+  profisafe_emergency_stop = 20,
+  safety_api_safeguard_stop = 22,
+  io_plane_stop = 23,
 };
 
 /// RTDE's runtime_state: state of the robot program.

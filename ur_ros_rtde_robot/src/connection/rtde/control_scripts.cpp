@@ -53,6 +53,15 @@ std::vector<std::string> ControlScripts::set(const std::vector<ScriptExtension> 
   extensions_.clear();
   left_out_.clear();
   for (const ScriptExtension & extension : extensions) {
+    if (mode_ == ControlMode::control_urcap && !extension.urcap.empty() && !extension.urcap_is_installed) {
+      const std::string why = fmt::format(
+          "it needs {}: if the robot has it, name {} in the parameter plugins. The program of the External "
+          "Control URCap would not start without it",
+          extension.urcap, extension.name);
+      left_out_.try_emplace(extension.name, LeftOut{extension.name, why});
+      log_(LogLevel::info, fmt::format("the extension {} is left out: {}", extension.name, why));
+      continue;
+    }
     extensions_.push_back(extension);
     if (const auto composed = script::compose(base, extensions_); !composed) {
       extensions_.pop_back();
@@ -164,9 +173,11 @@ std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const Controlle
   LeftOut left_out{culprit->name, fmt::format("the controller does not take {}: {}", where, complaint)};
   if (const std::string function = missing_function(*culprit, complaint); !function.empty()) {
     left_out.urcap = culprit->urcap;
-    left_out.why =
-        fmt::format("the robot does not know the function {}: install {} on it, then start the driver again",
-                    function, culprit->urcap);
+    left_out.why = fmt::format(
+        "the robot does not know the function {} in a program of the driver: install {} on it and "
+        "use control_mode: control_urcap. The functions of a URCap belong to the programs of the "
+        "pendant",
+        function, culprit->urcap);
   }
   left_out_[left_out.name] = left_out;
   extensions_.erase(culprit);
@@ -189,8 +200,8 @@ std::string ControlScripts::missing_urcaps_message() const
   }
   return parts.empty() ? std::string()
                        : fmt::format(
-                             "not installed on this robot: {}; goals for these commands are rejected; "
-                             "to use them, install it and start the driver again",
+                             "unknown in programs of the driver: {}; goals for these commands are rejected; "
+                             "to use them, install it on the robot and use control_mode: control_urcap",
                              fmt::join(parts, "; "));
 }
 

@@ -10,6 +10,7 @@
 #include "script/control_script.hpp"
 #include "ur_ros_rtde_robot/connection/link.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
+#include "ur_ros_rtde_robot/robot_options.hpp"
 #include "ur_ros_rtde_robot/script/script_extension.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
 
@@ -18,12 +19,12 @@ namespace ur_ros_rtde {
 /// Composes the control script: that of ur_rtde plus the code of the extensions. Thread-safe.
 class ControlScripts {
  public:
-  ControlScripts(bool upper_range_registers, LogFunction log)
-      : upper_range_(upper_range_registers), log_(std::move(log))
+  ControlScripts(bool upper_range_registers, ControlMode mode, LogFunction log)
+      : upper_range_(upper_range_registers), mode_(mode), log_(std::move(log))
   {
   }
 
-  /// Replaces the extensions. Returns one message per omitted extension, with the reason.
+  /// Replaces the extensions. Returns one message per faulty one, which is omitted, with the reason.
   std::vector<std::string> set(const std::vector<ScriptExtension> & extensions);
   bool has_extensions() const;
 
@@ -60,6 +61,7 @@ class ControlScripts {
   std::string resolved_text(const script::ControlScript & script, const ControllerVersion & version) const;
 
   const bool upper_range_;
+  const ControlMode mode_;
   const LogFunction log_;
   mutable std::mutex mutex_;
   std::vector<ScriptExtension> extensions_;
