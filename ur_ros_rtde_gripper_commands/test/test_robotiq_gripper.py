@@ -87,6 +87,23 @@ def test_cancel_stops_the_fingers(gripper, simulator):
     assert goal.result().width == pytest.approx(STROKE - stopped["POS"] * STEP, abs=0.005)
 
 
+def test_after_a_cancel_it_is_unknown_whether_an_object_is_held(gripper, simulator):
+    simulator.control("robotiq_gripper", object=40.0)
+    gripper.send(RobotiqGrip, "robotiq_close").succeeded()
+    assert gripper.send(RobotiqGetStatus, "robotiq_get_status").succeeded().object_detected
+    opening = gripper.send(RobotiqGrip, "robotiq_open", speed_fraction=0.0)
+    wait_for(lambda: registers(simulator)["POS"] < 100, 20.0, "the fingers to move")
+    opening.cancel()
+    assert opening.result().error_code == ErrorCode.CANCELED
+    assert not gripper.send(RobotiqGetStatus, "robotiq_get_status").succeeded().object_detected
+
+
+def test_the_range_of_the_fingers_is_that_of_the_gripper_in_use(gripper, simulator):
+    result = gripper.send(RobotiqMove, "robotiq_move", width=0.02, stroke=0.05, closed_position=255).succeeded()
+    assert registers(simulator)["PRE"] == result.position == 153
+    assert result.width == pytest.approx(0.02)
+
+
 def test_gripper_and_arm_move_together_but_not_two_gripper_goals(gripper, simulator):
     arm = gripper.send(MoveJ, "move_j", joint_positions=[0.5, -1.57, 1.57, -1.57, -1.57, 0.0], speed=0.3)
     closing = gripper.send(RobotiqGrip, "robotiq_close", speed_fraction=0.0)
@@ -152,6 +169,7 @@ def test_an_activation_that_is_blocked_times_out(gripper, simulator):
     ({"width": -0.01}, ["width is -0.01 m"]),
     ({"width": float("nan")}, ["width is nan"]),
     ({"width": 0.0, "stroke": 0.0}, ["stroke is 0", "0.01"]),
+    ({"width": 0.0, "closed_position": 0}, ["closed_position is 0", "255"]),
     ({"width": 0.0, "speed_fraction": 1.1}, ["speed_fraction is 1.1"]),
     ({"width": 0.0, "force_fraction": -0.1}, ["force_fraction is -0.1"]),
     ({"width": 0.0, "timeout": 0.0}, ["timeout is 0"]),

@@ -205,6 +205,29 @@ def test_stand_down_powers_off_although_its_stop_has_failed(addresses, processes
         assert simulator.state()["robot_mode"] == "POWER_OFF" and simulator.is_at_rest()
 
 
+class AnswersStopLate(PassesOn):
+    """Passes `stop` on, and answers it only when the goal of the stop has ended."""
+
+    ended = threading.Event()
+
+    def answer(self, line):
+        answer = super().answer(line)
+        if line.strip() == b"stop":
+            self.ended.wait(10.0)
+        return answer
+
+
+def test_a_stop_succeeds_without_the_answer_of_a_busy_dashboard_server(addresses, processes):
+    AnswersStopLate.ended.clear()
+    with robot_behind(AnswersStopLate, addresses, processes, "busy", "plugins:=[send_script,stop]") as (client, simulator):
+        script = client.send(SendScript, "send_script", script=f"movej({home_plus(3.0)}, a=1, v=0.2)")
+        wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
+        client.send(Stop, "stop").succeeded()
+        assert simulator.is_at_rest() and not AnswersStopLate.ended.is_set()
+        AnswersStopLate.ended.set()
+        assert script.wait_for_result()[1].error_code == ErrorCode.PREEMPTED
+
+
 @pytest.fixture
 def make_ready_held(addresses, processes):
     """A client and the simulator behind a proxy, with the arm powered off."""

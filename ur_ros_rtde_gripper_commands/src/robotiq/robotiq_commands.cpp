@@ -32,10 +32,23 @@ void check_urcap(Check & check)
 }
 
 template <typename Goal>
-void check_motion(Check & check, const Goal & goal)
+FingerRange range_of(const Goal & goal)
+{
+  return {goal.stroke, goal.closed_position};
+}
+
+template <typename Goal>
+void check_range(Check & check, const Goal & goal)
 {
   check.in_range("stroke", goal.stroke, min_stroke, max_stroke, "m")
-      .in_range("speed_fraction", goal.speed_fraction, 0.0, 1.0)
+      .in_range("closed_position", goal.closed_position, 1, max_register);
+}
+
+template <typename Goal>
+void check_motion(Check & check, const Goal & goal)
+{
+  check_range(check, goal);
+  check.in_range("speed_fraction", goal.speed_fraction, 0.0, 1.0)
       .in_range("force_fraction", goal.force_fraction, 0.0, 1.0)
       .above_zero("timeout", goal.timeout, longest_timeout, "s");
 }
@@ -55,7 +68,7 @@ Outcome move_fingers(const Goal & goal, Run & run, int position)
 {
   RobotiqGripper gripper(run, goal.timeout, [&](const RobotiqState & state) {
     run.result().position = static_cast<std::uint8_t>(state.position);
-    run.result().width = to_width(state.position, goal.stroke);
+    run.result().width = range_of(goal).width(state.position);
     run.result().object_detected = state.object_detected();
     run.feedback().width = run.result().width;
     run.publish();
@@ -100,7 +113,7 @@ class RobotiqMove : public RobotiqCommand<action::RobotiqMove> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    return move_fingers(goal, run, to_position(goal.width, goal.stroke));
+    return move_fingers(goal, run, range_of(goal).position(goal.width));
   }
 };
 
@@ -141,7 +154,7 @@ class RobotiqGetStatus : public Command<action::RobotiqGetStatus> {
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("stroke", goal.stroke, min_stroke, max_stroke, "m");
+    check_range(check, goal);
     check_urcap(check);
   }
 
@@ -150,7 +163,7 @@ class RobotiqGetStatus : public Command<action::RobotiqGetStatus> {
     const RobotiqState state = RobotiqGripper(run, longest_timeout, {}).read();
     run.result().active = state.active();
     run.result().position = static_cast<std::uint8_t>(state.position);
-    run.result().width = to_width(state.position, goal.stroke);
+    run.result().width = range_of(goal).width(state.position);
     run.result().object_detected = state.object_detected();
     run.result().fault = static_cast<std::uint8_t>(state.fault);
     run.result().fault_text = robotiq_fault_text(state.fault);

@@ -67,12 +67,12 @@ std::string robotiq_fault_text(int fault)
   }
 }
 
-double to_width(int position, double stroke)
+double FingerRange::width(int position) const
 {
   return stroke * (1.0 - static_cast<double>(std::min(position, closed_position)) / closed_position);
 }
 
-int to_position(double width, double stroke)
+int FingerRange::position(double width) const
 {
   return std::clamp(static_cast<int>(std::lround(closed_position * (1.0 - width / stroke))), 0,
                     closed_position);
@@ -106,7 +106,11 @@ void RobotiqGripper::set(const std::string & assignments)
 
 RobotiqState RobotiqGripper::read()
 {
-  return {.status = get("STA"), .contact = get("OBJ"), .fault = get("FLT"), .position = get("POS")};
+  return {.status = get("STA"),
+          .contact = get("OBJ"),
+          .fault = get("FLT"),
+          .position = get("POS"),
+          .go_to = get("GTO")};
 }
 
 Outcome RobotiqGripper::until(const Condition & condition, const std::string & otherwise)

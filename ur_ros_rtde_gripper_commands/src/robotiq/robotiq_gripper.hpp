@@ -9,28 +9,32 @@
 namespace ur_ros_rtde_gripper_commands {
 
 constexpr int max_register = 255;
-/// Register POS of closed fingers, as recorded with a 2F-85: they meet before the largest position that can
-/// be requested.
-constexpr int closed_position = 227;
-
 /// The status registers (Robotiq, "2F-85 & 2F-140 Instruction Manual", register mapping).
 struct RobotiqState {
   int status = 0;    ///< STA: 0 reset, 1 activation in progress, 3 active
   int contact = 0;   ///< OBJ: 0 in motion, 1 contact while opening, 2 contact while closing, 3 at the target
   int fault = 0;     ///< FLT: 0 none
-  int position = 0;  ///< POS: 0 open, closed_position closed
+  int position = 0;  ///< POS: 0 open
+  int go_to = 0;     ///< GTO: 1 moves to the target; without it, OBJ means nothing
 
   bool active() const { return status == 3; }
-  bool object_detected() const { return contact == 1 || contact == 2; }
+  bool object_detected() const { return go_to == 1 && (contact == 1 || contact == 2); }
   bool operator==(const RobotiqState &) const = default;
 };
 
 /// Cause and remedy of a fault code.
 std::string robotiq_fault_text(int fault);
 
-/// The width between the fingers (m), which is nearly linear in the position; 0 beyond closed_position.
-double to_width(int position, double stroke);
-int to_position(double width, double stroke);
+/// The range of the fingers. Closed ones meet before the largest position that can be requested, except those
+/// of a Hand-E.
+struct FingerRange {
+  double stroke = 0.0;      ///< m
+  int closed_position = 0;  ///< register POS
+
+  /// The width between the fingers (m), which is nearly linear in the position; 0 beyond closed_position.
+  double width(int position) const;
+  int position(double width) const;
+};
 
 struct RobotiqTarget {
   int position = 0;
