@@ -78,12 +78,15 @@ Status DashboardSession::greeting(const WaitLimit & wait_limit)
 /// Does not wait for the greeting before it sends: a busy controller may greet late.
 Expected<std::string> DashboardSession::ask(const std::string & line, const WaitLimit & wait_limit)
 {
-  const auto next = [&] { return next_line(wait_limit); };
   const bool is_new = !socket_ || !received_.empty();  // what has arrived does not answer this request
-  auto answer = (is_new ? open(wait_limit) : Status())
-                    .and_then([&] { return write(line, wait_limit); })
-                    .and_then([&] { return is_new ? greeting(wait_limit) : Status(); })
-                    .and_then(next);
+  Status sent = is_new ? open(wait_limit) : Status();
+  if (sent) {
+    sent = write(line, wait_limit);
+  }
+  if (sent && is_new) {
+    sent = greeting(wait_limit);
+  }
+  auto answer = sent ? next_line(wait_limit) : Expected<std::string>(tl::unexpected(sent.error()));
   if (!answer) {
     socket_.reset();
   }
@@ -105,7 +108,8 @@ Expected<std::string> DashboardSession::request(const std::string & line, std::c
 Status DashboardSession::connect(std::chrono::milliseconds timeout, const std::stop_token & stop)
 {
   const WaitLimit wait_limit{Clock::now() + timeout, stop};
-  return open(wait_limit).and_then([&] { return greeting(wait_limit); });
+  const Status opened = open(wait_limit);
+  return opened ? greeting(wait_limit) : opened;
 }
 
 Expected<std::string> DashboardSession::request_once(const std::string & line,
@@ -114,7 +118,8 @@ Expected<std::string> DashboardSession::request_once(const std::string & line,
                                                      std::chrono::milliseconds grace)
 {
   const WaitLimit wait_limit{Clock::now() + timeout, stop, grace};
-  return write(line, wait_limit).and_then([&] { return next_line(wait_limit); });
+  const Status sent = write(line, wait_limit);
+  return sent ? next_line(wait_limit) : tl::unexpected(sent.error());
 }
 
 }  // namespace ur_ros_rtde
