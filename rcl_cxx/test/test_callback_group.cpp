@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <future>
+#include <test_msgs/msg/empty.hpp>
 #include <thread>
 
 #include "action_fixture.hpp"
@@ -54,6 +55,32 @@ TEST_F(CallbackGroupTest, CancelOfAllGoalsReachesOneThatIsBeingChecked)
   EXPECT_FALSE(get(std::move(response))) << "it was canceled before it was accepted";
   EXPECT_EQ(get(std::move(cancel)).goals.size(), 1U);
   EXPECT_TRUE(accepted(0)->canceled());
+}
+
+TEST_F(CallbackGroupTest, MessagesDoNotWaitForTheCallbackOfAGoalRequest)
+{
+  serve_with_group();
+  std::atomic<int> received{0};
+  const auto subscription = node->create_subscription<test_msgs::msg::Empty>(
+      "messages", rcl_cxx::QoS::services_default(), [&](const test_msgs::msg::Empty &) { ++received; },
+      group);
+  const auto publisher =
+      node->create_publisher<test_msgs::msg::Empty>("messages", rcl_cxx::QoS::services_default());
+  std::promise<void> blocks;
+  std::promise<void> ends;
+  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) {
+    blocks.set_value();
+    ends.get_future().wait();
+    return rcl_cxx::GoalResponse{};
+  };
+  auto response = client->async_send_goal(goal_of(1), {});
+  ASSERT_EQ(blocks.get_future().wait_for(kLimit), std::future_status::ready);
+  EXPECT_TRUE(eventually([&] {
+    publisher->publish(test_msgs::msg::Empty());
+    return received > 0;
+  }));
+  ends.set_value();
+  EXPECT_TRUE(get(std::move(response)));
 }
 
 TEST_F(CallbackGroupTest, CancelRequestsDoNotWaitForTheCallbackOfAGoalRequest)

@@ -252,13 +252,26 @@ TEST_F(ClientLostTest, DoesNotLeaveGoalRunningThatItSentAsItEnded)
 }
 
 /// As a launch file remaps it, with a rule for each topic and service.
-TEST(RemappedActionTest, DoesNotLoseItsClients)
-{
-  std::vector<std::string> rules{"--ros-args"};
-  for (const std::string name : {"send_goal", "cancel_goal", "get_result", "feedback", "status"}) {
-    rules.insert(rules.end(), {"-r", "fibonacci/_action/" + name + ":=count/_action/" + name});
+/// One rule for the action, or one for each of its services and topics.
+class RemappedActionTest : public testing::TestWithParam<bool> {
+ protected:
+  static std::vector<std::string> rules()
+  {
+    std::vector<std::string> rules{"--ros-args"};
+    if (GetParam()) {
+      rules.insert(rules.end(), {"-r", "fibonacci:=count"});
+      return rules;
+    }
+    for (const std::string name : {"send_goal", "cancel_goal", "get_result", "feedback", "status"}) {
+      rules.insert(rules.end(), {"-r", "fibonacci/_action/" + name + ":=count/_action/" + name});
+    }
+    return rules;
   }
-  const auto context = make_context(rules);
+};
+
+TEST_P(RemappedActionTest, DoesNotLoseItsClients)
+{
+  const auto context = make_context(rules());
   rcl_cxx::Node node(context, "node", "/test");
   rcl_cxx::Executor executor(context);
   executor.add_node(node);
@@ -283,6 +296,8 @@ TEST(RemappedActionTest, DoesNotLoseItsClients)
   context->shutdown("end of the test");
   thread.join();
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, RemappedActionTest, testing::Bool());
 
 TEST_F(ClientLostTest, MayDestroyItsServerInTheHandler)
 {

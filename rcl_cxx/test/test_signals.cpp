@@ -64,13 +64,15 @@ class SignalTest : public testing::TestWithParam<int> {};
 
 TEST_P(SignalTest, ShutsDownAndEndsSpin)
 {
-  const Child child("spins_until", GetParam() == SIGINT ? "SIGINT" : "SIGTERM");
+  const Child child("spins_until", GetParam() == SIGINT    ? "SIGINT"
+                                   : GetParam() == SIGTERM ? "SIGTERM"
+                                                           : "SIGHUP");
   child.wait_for_report();
   child.send(GetParam());
   EXPECT_TRUE(succeeded(child.wait_for_exit()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(All, SignalTest, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
 TEST(EarlySignalTest, IsNotLostBeforeTheContextListens)
 {

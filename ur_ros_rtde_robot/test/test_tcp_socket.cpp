@@ -34,7 +34,7 @@ TEST(StopProgramTest, DoesNotWaitForANameServer)
   Controller controller(Controller::options());
   ASSERT_TRUE(TcpSocket::connect("robot.test", dashboard_port, 1s));  // as when the driver starts
   name_server_answers = false;
-  const auto stopped = stop_program("robot.test");
+  const auto stopped = stop_program("robot.test", 1s);
   EXPECT_TRUE(stopped) << stopped.error().message;
 }
 

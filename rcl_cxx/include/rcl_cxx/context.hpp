@@ -13,10 +13,10 @@ class ContextImpl;
 }
 
 struct InitOptions {
-  /// SIGINT and SIGTERM shut the context down, in a thread of its own. Several contexts may set this. A
-  /// signal that arrives later than `signal_grace` after the first one has its default action, so that Ctrl-C
-  /// ends a shutdown that hangs. An earlier one is logged and has no effect: a launcher and the terminal may
-  /// both send SIGINT.
+  /// SIGINT, SIGTERM and SIGHUP shut the context down, in a thread of its own. Several contexts may set this.
+  /// A signal that arrives later than `signal_grace` after the first one has its default action, so that
+  /// Ctrl-C ends a shutdown that hangs. An earlier one is logged and has no effect: a launcher and the
+  /// terminal may both send SIGINT.
   bool shutdown_on_signal = true;
   std::chrono::milliseconds signal_grace{2000};
   /// Configure rcl logging from the arguments (--log-level, …). The first context of a process that sets this

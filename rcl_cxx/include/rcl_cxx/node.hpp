@@ -62,12 +62,12 @@ class Node {
     return std::make_shared<Publisher<M>>(impl_, topic, qos);
   }
 
-  /// `callback` takes const M & or std::shared_ptr<const M>.
+  /// `callback` takes const M & or std::shared_ptr<const M>. It runs in `group`; default: that of the node.
   template <typename M, typename F>
   std::shared_ptr<Subscription<M>> create_subscription(const std::string & topic, const QoS & qos,
-                                                       F && callback)
+                                                       F && callback, CallbackGroup::SharedPtr group = {})
   {
-    return std::make_shared<Subscription<M>>(impl_, topic, qos, std::forward<F>(callback));
+    return std::make_shared<Subscription<M>>(impl_, topic, qos, std::forward<F>(callback), std::move(group));
   }
 
   /// `callback` is called as callback(const S::Request &, S::Response &).

@@ -13,6 +13,7 @@
 #include <string>
 #include <type_traits>
 
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/qos.hpp"
 
 namespace rcl_cxx {
@@ -42,7 +43,7 @@ struct ErasedSubscription {
 class SubscriptionBase {
  public:
   SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedSubscription erased,
-                   const std::string & topic, const QoS & qos);
+                   const std::string & topic, const QoS & qos, CallbackGroup::SharedPtr group);
   /// Waits for a callback that is running in the executor's thread, unless it is called from there. No
   /// callback runs afterwards.
   virtual ~SubscriptionBase();
@@ -68,12 +69,12 @@ class Subscription : public SubscriptionBase {
 
   template <typename F>
   Subscription(std::shared_ptr<detail::NodeImpl> node, const std::string & topic, const QoS & qos,
-               F && callback)
+               F && callback, CallbackGroup::SharedPtr group = {})
       : SubscriptionBase(std::move(node),
                          {rosidl_typesupport_cpp::get_message_type_support_handle<M>(),
                           []() -> std::shared_ptr<void> { return std::make_shared<M>(); },
                           erase(std::forward<F>(callback))},
-                         topic, qos)
+                         topic, qos, std::move(group))
   {
   }
 

@@ -62,9 +62,9 @@ void ActionServerImpl::check_clients()
       handle = goal->needs_client() ? goal->handle.lock() : nullptr;
     }
     if (handle) {
+      call("on_client_lost", goal->id(), [&] { callbacks_.on_client_lost(*handle); });
       RCL_CXX_WARN(node()->get_logger(), "{}: goal {}: its client has disappeared", name_,
                    goal->id().short_string());
-      call("on_client_lost", goal->id(), [&] { callbacks_.on_client_lost(*handle); });
     }
   }
 }

@@ -60,7 +60,7 @@ ActionServerImpl::ActionServerImpl(std::shared_ptr<NodeImpl> node, const ActionT
             label(), "cannot create a timer");
   const rcl_ret_t code =
       compat::action_server_init(&server_, owner.handle(), &rcl_timer_, owner.get_clock().handle(),
-                                 type_support_.get(), name.c_str(), &rcl_options);
+                                 type_support_.get(), name_.c_str(), &rcl_options);
   if (code != RCL_RET_OK) {
     const std::string reason = take_rcl_error();
     ignore_rcl(rcl_timer_fini(&rcl_timer_));

@@ -6,6 +6,7 @@
 #include <rcl/init_options.h>
 
 #include <csignal>
+#include <cstring>
 
 #include "context/arguments.hpp"
 #include "context/logging_impl.hpp"
@@ -102,7 +103,7 @@ void ContextImpl::join_signal_thread()
 
 void ContextImpl::on_signal(int signal)
 {
-  const char * const name = signal == SIGINT ? "SIGINT" : "SIGTERM";
+  const std::string name = fmt::format("SIG{}", ::sigabbrev_np(signal));
   const auto now = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
   if (!first_signal_) {

@@ -1,9 +1,13 @@
 #include "rcl_cxx/logging.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <rcl/allocator.h>
 #include <rcl/logging.h>
 #include <rcutils/logging.h>
+#include <unistd.h>
+
+#include <cstdlib>
 
 #include "context/logging_impl.hpp"
 #include "rcl_support/rcl_error.hpp"
@@ -18,10 +22,43 @@ std::recursive_mutex & logging_mutex()
 }
 
 namespace {
+/// The console blocks a writer while nobody reads it (Ctrl-S, a full pipe), and the lock then blocks every
+/// other thread. So messages that it does not take are counted instead. Guarded by logging_mutex.
+class Console {
+ public:
+  bool takes_a_message()
+  {
+    constexpr int patience = 20;  // ms, for a reader that is a little late
+    pollfd entry{descriptor_, POLLOUT, 0};
+    is_read_ = ::poll(&entry, 1, is_read_ ? patience : 0) != 0;
+    lost_ += is_read_ ? 0 : 1;
+    return is_read_;
+  }
+  unsigned take_lost() { return std::exchange(lost_, 0U); }
+
+ private:
+  static int choose()
+  {
+    const char * use_stdout = std::getenv("RCUTILS_LOGGING_USE_STDOUT");
+    return use_stdout != nullptr && std::string_view(use_stdout) == "1" ? STDOUT_FILENO : STDERR_FILENO;
+  }
+  const int descriptor_ = choose();
+  bool is_read_ = true;
+  unsigned lost_ = 0;
+};
+
 void write_locked(const rcutils_log_location_t * location, int severity, const char * name,
                   rcutils_time_point_value_t timestamp, const char * format, va_list * arguments)
 {
+  static Console console;
   const std::lock_guard lock(logging_mutex());
+  if (!console.takes_a_message()) {
+    return;
+  }
+  if (const unsigned lost = console.take_lost(); lost != 0) {
+    rcutils_log(nullptr, RCUTILS_LOG_SEVERITY_WARN, "rcl_cxx",
+                "%u log messages were not written: nobody read the console", lost);
+  }
   rcl_logging_multiple_output_handler(location, severity, name, timestamp, format, arguments);
 }
 

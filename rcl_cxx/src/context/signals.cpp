@@ -13,7 +13,7 @@
 
 namespace rcl_cxx::detail {
 namespace {
-constexpr int kSignals[] = {SIGINT, SIGTERM};
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr unsigned char kQuit = 0;
 
 // A signal handler may use lock-free atomics and write(2) only.
@@ -64,7 +64,10 @@ SignalWatcher::SignalWatcher()
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < std::size(kSignals); ++i) {
-    ::sigaction(kSignals[i], &action, &g_previous[i]);
+    ::sigaction(kSignals[i], nullptr, &g_previous[i]);
+    if (kSignals[i] != SIGHUP || g_previous[i].sa_handler != SIG_IGN) {  // nohup
+      ::sigaction(kSignals[i], &action, nullptr);
+    }
   }
 }
 

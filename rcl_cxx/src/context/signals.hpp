@@ -8,8 +8,8 @@
 #include <thread>
 
 namespace rcl_cxx::detail {
-/// Delivers SIGINT and SIGTERM as calls in an ordinary thread. There is one per process, shared by all
-/// contexts. The previous handlers are restored with its destruction.
+/// Delivers SIGINT, SIGTERM and SIGHUP as calls in an ordinary thread. There is one per process, shared by
+/// all contexts. The previous handlers are restored with its destruction.
 class SignalWatcher {
  public:
   using Callback = std::function<void(int signal)>;

@@ -29,7 +29,7 @@ MessageInfo to_message_info(const rmw_message_info_t & rmw_info)
 class SubscriptionImpl : public Waitable {
  public:
   SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased, const std::string & topic,
-                   const QoS & qos);
+                   const QoS & qos, CallbackGroup::SharedPtr group);
   ~SubscriptionImpl() override;
 
   const std::string & get_topic_name() const noexcept { return topic_; }
@@ -42,11 +42,13 @@ class SubscriptionImpl : public Waitable {
  protected:
   void execute(std::size_t source) override;
   void clear_on_ready_callbacks() noexcept override;
+  const CallbackGroup & group(std::size_t) const override { return *group_; }
 
  private:
   enum Source : std::size_t { kMessage, kQosEvent };
 
   const ErasedSubscription erased_;
+  const CallbackGroup::SharedPtr group_;
   const MessageTypeSupport type_support_;
   rcl_subscription_t subscription_ = rcl_get_zero_initialized_subscription();
   std::string topic_;
@@ -55,9 +57,10 @@ class SubscriptionImpl : public Waitable {
 };
 
 SubscriptionImpl::SubscriptionImpl(std::shared_ptr<NodeImpl> node, ErasedSubscription erased,
-                                   const std::string & topic, const QoS & qos)
+                                   const std::string & topic, const QoS & qos, CallbackGroup::SharedPtr group)
     : Waitable(std::move(node), fmt::format("subscription {}", topic)),
       erased_(std::move(erased)),
+      group_(group ? std::move(group) : this->node()->default_group()),
       type_support_(erased_.type_support)
 {
   rcl_subscription_options_t options = rcl_subscription_get_default_options();
@@ -127,8 +130,9 @@ bool SubscriptionImpl::take(void * message, MessageInfo & info)
 }  // namespace detail
 
 SubscriptionBase::SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedSubscription erased,
-                                   const std::string & topic, const QoS & qos)
-    : impl_(detail::make_waitable<detail::SubscriptionImpl>(std::move(node), std::move(erased), topic, qos))
+                                   const std::string & topic, const QoS & qos, CallbackGroup::SharedPtr group)
+    : impl_(detail::make_waitable<detail::SubscriptionImpl>(std::move(node), std::move(erased), topic, qos,
+                                                            std::move(group)))
 {
 }
 SubscriptionBase::~SubscriptionBase()

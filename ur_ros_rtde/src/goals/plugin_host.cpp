@@ -122,8 +122,8 @@ void CommandHost::end_modes_of(const rcl_cxx::GoalUUID & goal)
       ErrorCode::client_lost,
       "the client that switched on the mode of the arm has disappeared: keep its action client alive, "
       "or set outlives_client"};
-  RCL_CXX_WARN(node().get_logger(), "the arm is stopped: {}", why.message);
   begin_stop({}, why);
+  RCL_CXX_WARN(node().get_logger(), "the arm is stopped: {}", why.message);
 }
 
 void CommandHost::add_command(const std::string & name, CommandPlugin & command)

@@ -29,8 +29,8 @@ void Supervision::watch(const std::stop_token & stop)
     }
     const auto why = evaluate(sample);
     if (why && !is_stopped) {
-      RCL_CXX_WARN(host_.node().get_logger(), "the arm is stopped: {}", why->message);
       host_.begin_stop(options_, *why);
+      RCL_CXX_WARN(host_.node().get_logger(), "the arm is stopped: {}", why->message);
     }
     is_stopped = why.has_value();
   }

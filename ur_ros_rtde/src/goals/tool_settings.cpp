@@ -33,14 +33,17 @@ Sample with_payload(const Sample & sample)
   return sample;
 }
 
-/// Waits for the end of a motion or of a stop. The load of a moving arm is not changed.
-void wait_for_standstill(const Robot & robot)
+/// Waits for the end of a motion or of a stop: the load of a moving arm is not changed.
+void require_standstill(const Robot & robot)
 {
   constexpr std::chrono::seconds limit{5};
   constexpr std::chrono::milliseconds timeout{100};
   const auto deadline = std::chrono::steady_clock::now() + limit;
   for (Sample sample{}; robot.is_moving() && std::chrono::steady_clock::now() < deadline;) {
     static_cast<void>(robot.wait_for_next(sample, timeout));
+  }
+  if (robot.is_moving()) {
+    throw RobotError({ErrorCode::busy, "the arm moves"});
   }
 }
 
@@ -95,7 +98,7 @@ TemporarySetting::~TemporarySetting()
     return;
   }
   try {
-    wait_for_standstill(run_.robot());
+    require_standstill(run_.robot());
     check_result(put_back_(*run_.control_for_queries().hold()), "accept it");
   } catch (const std::exception & error) {
     run_.warn(fmt::format("{} was not put back: {}", name_, error.what()));

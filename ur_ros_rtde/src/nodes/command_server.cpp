@@ -50,6 +50,13 @@ void CommandServer::load_plugins()
   robot_->connect();
 }
 
+std::vector<const rcl_cxx::CallbackGroup *> CommandServer::groups()
+{
+  auto groups = host_->groups();
+  groups.push_back(&teleoperation_->group());
+  return groups;
+}
+
 void CommandServer::create_actions()
 {
   plugins_.start(*host_, log_plugin_problems(node_));

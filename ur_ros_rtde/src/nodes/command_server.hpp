@@ -22,7 +22,7 @@ class CommandServer : public Server {
   ~CommandServer() override;
 
   rcl_cxx::Node & node() override { return *node_; }
-  std::vector<const rcl_cxx::CallbackGroup *> groups() override { return host_->groups(); }
+  std::vector<const rcl_cxx::CallbackGroup *> groups() override;
   Robot & robot() { return *robot_; }
   CommandHost & host() { return *host_; }
   void load_plugins() override;

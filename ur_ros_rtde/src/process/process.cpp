@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -46,6 +47,17 @@ void close_servers(const Servers & servers)
   }
   exit_without(left, servers.front()->node());
 }
+
+/// Destroys them in reverse, also after an exception: a server may call those before it.
+struct ServersInReverse {
+  Servers servers;
+  ~ServersInReverse()
+  {
+    while (!servers.empty()) {
+      servers.pop_back();
+    }
+  }
+};
 
 using DuplicateChecks = std::vector<std::unique_ptr<DuplicateCheck>>;
 
@@ -186,12 +198,10 @@ int run_process(int argc, char ** argv, const MakeServers & make)
       std::fprintf(help ? stdout : stderr, "%s\n", help ? help->c_str() : help.error().c_str());
       return help ? 0 : wrong_arguments;
     }
-    Servers servers = make(context);
-    report_fastdds_profile(servers.front()->node().get_logger());
-    serve(context, servers, rejected, has_failed);
-    while (!servers.empty()) {
-      servers.pop_back();
-    }
+    std::signal(SIGPIPE, SIG_IGN);  // nobody reads the log: not a reason to leave the arm
+    ServersInReverse made{make(context)};
+    report_fastdds_profile(made.servers.front()->node().get_logger());
+    serve(context, made.servers, rejected, has_failed);
     return rejected ? wrong_arguments : 0;
   } catch (const std::exception & error) {
     if (context && !context->ok() && !has_failed) {

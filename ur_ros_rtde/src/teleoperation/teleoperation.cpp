@@ -7,7 +7,8 @@ namespace ur_ros_rtde {
 Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log)
     : joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log),
       poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),
-      twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log)
+      twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log),
+      group_(host.node().create_callback_group())
 {
   // A lost message is not worth a retransmission.
   const auto newest_only = rcl_cxx::QoS::best_effort(1);
@@ -15,17 +16,20 @@ Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, 
       "servo_joint", newest_only,
       [this, &host](const sensor_msgs::msg::JointState & m, const rcl_cxx::MessageInfo & info) {
         joints_.on_message(joint_target(m, host.limits(), host.options().tf_prefix), info);
-      });
+      },
+      group_);
   pose_messages_ = host.node().create_subscription<geometry_msgs::msg::PoseStamped>(
       "servo_pose", newest_only,
       [this, &host](const geometry_msgs::msg::PoseStamped & m, const rcl_cxx::MessageInfo & info) {
         poses_.on_message(pose_target(m, host.options().tf_prefix), info);
-      });
+      },
+      group_);
   twist_messages_ = host.node().create_subscription<geometry_msgs::msg::TwistStamped>(
       "twist", newest_only,
       [this, &host](const geometry_msgs::msg::TwistStamped & m, const rcl_cxx::MessageInfo & info) {
         twists_.on_message(twist_target(m, host.options().tf_prefix), info);
-      });
+      },
+      group_);
 }
 
 void Teleoperation::stop(const Error & why)

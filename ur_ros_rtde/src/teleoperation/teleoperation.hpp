@@ -14,6 +14,8 @@ namespace ur_ros_rtde {
 class Teleoperation {
  public:
   Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log);
+  /// Of the messages: what else the node answers does not delay them.
+  const rcl_cxx::CallbackGroup & group() const { return *group_; }
   /// Tells all sessions to end and starts no other. Returns at once.
   void stop(const Error & why);
   /// Calls stop() and waits for their end.
@@ -21,6 +23,7 @@ class Teleoperation {
 
  private:
   TeleopTopic joints_, poses_, twists_;
+  rcl_cxx::CallbackGroup::SharedPtr group_;
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr joint_messages_;
   rcl_cxx::Subscription<geometry_msgs::msg::PoseStamped>::SharedPtr pose_messages_;
   rcl_cxx::Subscription<geometry_msgs::msg::TwistStamped>::SharedPtr twist_messages_;

@@ -86,7 +86,7 @@ trajectory_msgs::msg::JointTrajectoryPoint to_point(const std::array<std::size_t
 /// describes the differences.
 class FollowJointTrajectory : public Command<Action> {
  public:
-  void start_action_server(CommandHost & host, const std::string & name) override;
+  void on_load(CommandHost & host) override;
 
  private:
   CommandTraits traits() const override { return {.preempts_self = true}; }
@@ -109,7 +109,7 @@ class FollowJointTrajectory : public Command<Action> {
   ServoSettings servo_;
 };
 
-void FollowJointTrajectory::start_action_server(CommandHost & host, const std::string & name)
+void FollowJointTrajectory::on_load(CommandHost & host)
 {
   host_ = &host;
   const auto declare = [&](const char * what, double value, double low, double high, const char * text) {
@@ -117,7 +117,7 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
     options.description = text;
     options.read_only = true;
     options.floating_point_range = rcl_cxx::FloatingPointRange{low, high};
-    return host.node().declare_parameter(name + "." + what, value, options);
+    return host.node().declare_parameter(std::string("follow_joint_trajectory.") + what, value, options);
   };
   servo_.parameters.lookahead_time =
       declare("lookahead_time", 0.03, 0.03, 0.2, "s: lookahead of the smoothing in the controller");
@@ -126,7 +126,6 @@ void FollowJointTrajectory::start_action_server(CommandHost & host, const std::s
       declare("max_tracking_error", 0.3, 0.001, 3.14,
               "rad: above this error the goal is aborted and the arm stops, regardless of "
               "the tolerances of the goal");
-  Command<Action>::start_action_server(host, name);
 }
 
 void FollowJointTrajectory::check_time(const Goal & goal, Check & check) const

@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import socket
+import subprocess
 import threading
 import time
 
@@ -61,6 +62,31 @@ def test_a_misspelled_parameter_prevents_the_start(name, address, parameter, mes
     process = start_node(name, address, parameter)
     assert process.wait(15.0) == 2
     assert message in process.output()
+
+
+def test_a_misspelled_parameter_is_named_beside_a_robot_that_sends_its_state(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    for _ in range(5):  # the connection is being made, or has been
+        process = start_node("driver", simulator.address, "watchdog_frequncy:=50.0")
+        assert process.wait(15.0) == 2
+        assert "did you mean watchdog_frequency?" in process.output()
+
+
+def test_a_driver_whose_log_nobody_reads_any_more_goes_on(addresses, processes):
+    simulator = processes(Simulator(addresses[1]))
+    driver = subprocess.Popen([find_program("ur_ros_rtde", "driver"), "--ros-args", "-p", f"robot_ip:={simulator.address}",
+                               "-p", FEW_PLUGINS, "-r", "__ns:=/unread"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    client = Client("unread")
+    try:
+        make_ready(client)
+        driver.stdout.close()
+        client.send(MoveJ, "move_j", joint_positions=[0.1, *HOME[1:]]).succeeded()
+        driver.terminate()
+        assert driver.wait(15.0) == 0
+    finally:
+        driver.kill()
+        driver.wait()
+        client.close()
 
 
 @pytest.mark.parametrize("name", NODES)
