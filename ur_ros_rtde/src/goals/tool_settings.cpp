@@ -43,7 +43,7 @@ void require_standstill(const Robot & robot)
     static_cast<void>(robot.wait_for_next(sample, timeout));
   }
   if (robot.is_moving()) {
-    throw RobotError({ErrorCode::busy, "the arm moves"});
+    throw RobotError({ErrorCode::busy, "the arm moves: set it again when it is at rest"});
   }
 }
 

@@ -18,16 +18,15 @@ class PowerDown : public Command<ur_ros_rtde_msgs::action::DashboardCommand> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    constexpr std::chrono::seconds stop_timeout{1};
-    constexpr std::chrono::seconds power_off_timeout{10};  // PolyScope 5 answers after 1 s
+    constexpr std::chrono::seconds stop_timeout{1}, power_off_timeout{10};  // PolyScope 5 answers after 1 s
     if (const auto stopped = run.wait_for_stop(); !stopped) {
       run.warn(stopped.error().message);  // all the more reason to power off
     }
     DashboardSession dashboard(run.robot().address());
     std::ignore = dashboard.request("stop", stop_timeout);  // the power off does not depend on it
-    if (const Status status = command_dashboard(dashboard, "power off", "Powering off", power_off_timeout);
-        !status) {
-      return status;
+    const Status off = command_dashboard(dashboard, "power off", "Powering off", power_off_timeout);
+    if (!off) {
+      return off;
     }
     return run_steps(run, goal.timeout, [&]() -> std::string {
       const std::string mode = query_dashboard(dashboard, "robotmode");
