@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <ur_ros_rtde/check.hpp>
 #include <ur_ros_rtde/outcome.hpp>
@@ -8,11 +9,10 @@
 
 namespace ur_ros_rtde_gripper_commands {
 
-// Range of the largest fingers: "OnRobot Soft Gripper, user guide".
-constexpr double min_width = 0.011;  // m
-constexpr double max_width = 0.075;  // m
-constexpr int max_tool_index = 3;
-constexpr double millimeters_per_meter = 1000.0;  // the functions of the URCap take millimeters
+// Range of all fingers, 11 to 75 mm (SG-a) and 24 to 117 mm (SG-b).
+constexpr double min_width = 0.011;               // m
+constexpr double max_width = 0.117;               // m
+constexpr double millimeters_per_meter = 1000.0;  // the functions of the URCap take integer millimeters
 
 inline ur_ros_rtde::ScriptExtension make_extension(std::string snippet)
 {
@@ -21,37 +21,31 @@ inline ur_ros_rtde::ScriptExtension make_extension(std::string snippet)
           .urcap_functions = {"get_sg_Width", "sg_grip", "sg_release"}};
 }
 
-inline void check_tool_index(ur_ros_rtde::Check & check, int index)
-{
-  check.in_range("tool_index", index, 0, max_tool_index);
-}
-
 /// Checks the fields that goals of sg_grip and sg_release have in common.
 template <typename Goal>
 void check_motion(ur_ros_rtde::Check & check, const Goal & goal)
 {
   check.in_range("target_width", goal.target_width, min_width, max_width, "m");
-  check_tool_index(check, goal.tool_index);
   check.above_zero("timeout", goal.timeout, 60.0, "s");
 }
 
 /// Runs the snippet, which writes the width to output register 19, and sets the width in the result. After a
-/// failure, the register may have the value of another goal. The functions of the URCap return -1 if they do
-/// not reach the gripper (OnRobot's user manual, on_return).
+/// failure, the register may have the value of another goal. If the URCap does not reach the gripper, or the
+/// fingers do not have the width, it shows a popup and ends the program.
 template <typename Run>
 ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
 {
   if (auto outcome = run.trigger(timeout); !outcome) {
     return outcome;
   }
-  const double width = run.registers().get_double(19) / millimeters_per_meter;
-  if (width < 0.0) {
-    return ur_ros_rtde::Outcome::failure(
-        ur_ros_rtde::ErrorCode::rejected_by_robot,
-        "the gripper does not answer: check its power, its cable and the state of the OnRobot URCap");
-  }
-  run.result().width = width;
+  run.result().width = run.registers().get_double(19) / millimeters_per_meter;
   return ur_ros_rtde::Outcome::success();
+}
+
+template <typename Goal>
+int target_in_millimeters(const Goal & goal)
+{
+  return static_cast<int>(std::lround(millimeters_per_meter * goal.target_width));
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

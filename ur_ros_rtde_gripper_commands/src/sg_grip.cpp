@@ -9,8 +9,8 @@ class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
   ur_ros_rtde::ScriptExtension script() const override
   {
     return make_extension(R"(
-      sg_grip($in19f, $in19i == 1, $in20i, True, $in21i == 1)
-      $out19f(get_sg_Width($in20i))
+      sg_grip($in19i, $in20i == 1, 0, True, $in21i == 1)
+      $out19f(get_sg_Width())
     )");
   }
 
@@ -18,9 +18,8 @@ class SgGrip : public ur_ros_rtde::Extension<action::SgGrip> {
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
-    run.registers().set_double(19, millimeters_per_meter * goal.target_width);
-    run.registers().set_int(19, goal.gentle);
-    run.registers().set_int(20, goal.tool_index);
+    run.registers().set_int(19, target_in_millimeters(goal));
+    run.registers().set_int(20, goal.gentle);
     run.registers().set_int(21, goal.depth_compensation);
     return trigger_and_read_width(run, goal.timeout);
   }

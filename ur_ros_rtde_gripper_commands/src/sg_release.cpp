@@ -9,8 +9,8 @@ class SgRelease : public ur_ros_rtde::Extension<action::SgRelease> {
   ur_ros_rtde::ScriptExtension script() const override
   {
     return make_extension(R"(
-      sg_release($in19f, $in19i, True, $in20i == 1)
-      $out19f(get_sg_Width($in19i))
+      sg_release($in19i, 0, True, $in20i == 1)
+      $out19f(get_sg_Width())
     )");
   }
 
@@ -18,8 +18,7 @@ class SgRelease : public ur_ros_rtde::Extension<action::SgRelease> {
 
   ur_ros_rtde::Outcome run(const Goal & goal, Run & run) override
   {
-    run.registers().set_double(19, millimeters_per_meter * goal.target_width);
-    run.registers().set_int(19, goal.tool_index);
+    run.registers().set_int(19, target_in_millimeters(goal));
     run.registers().set_int(20, goal.depth_compensation);
     return trigger_and_read_width(run, goal.timeout);
   }

@@ -12,11 +12,10 @@ namespace ur_ros_rtde {
 ///     class SgGetWidth : public Extension<action::SgGetWidth> {
 ///       ScriptExtension script() const override
 ///       {
-///         return {.snippet = "$out19f(get_sg_Width($in19i))"};
+///         return {.snippet = "$out19f(get_sg_Width())"};
 ///       }
-///       Outcome run(const Goal & goal, Run & run) override
+///       Outcome run(const Goal &, Run & run) override
 ///       {
-///         run.registers().set_int(19, goal.tool_index);
 ///         auto outcome = run.trigger(2.0);
 ///         run.result().width = run.registers().get_double(19) / 1000.0;
 ///         return outcome;

@@ -48,7 +48,8 @@ TEST_F(SoftGripperTest, ReleasesFasterThanGentleGrip)
 TEST_F(SoftGripperTest, MovesWhileProgramContinues)
 {
   run_script(
-      " sg_grip(15, False, 0, False)\n write_output_float_register(0, get_sg_Width())\n while sg_busy():\n  "
+      " sg_grip(15, False, 0, False)\n write_output_float_register(0, get_sg_Width())\n while "
+      "get_sg_Busy():\n  "
       "sync()\n end");
   ASSERT_TRUE(wait_for_program_end());
   EXPECT_GT(output_register(), 30.0);
@@ -58,23 +59,23 @@ TEST_F(SoftGripperTest, MovesWhileProgramContinues)
 TEST_F(SoftGripperTest, StopsAtObject)
 {
   ASSERT_TRUE(controller.control({{"command", "gripper"}, {"object", 33.0}})["ok"]);
-  run_script(" sg_grip(15)");
+  run_script(" sg_grip(15, False)");
   ASSERT_TRUE(wait_for_program_end());
   EXPECT_EQ(width(), 33.0);
 }
 
-TEST_F(SoftGripperTest, WarnsOfWidthOutOfRange)
+TEST_F(SoftGripperTest, HaltsTheProgramWithAPopupForAWidthOutOfRange)
 {
-  run_script(" sg_grip(200)");
+  run_script(" sg_grip(200, False)");
   ASSERT_TRUE(wait_for_program_end());
-  EXPECT_TRUE(log_contains(controller, "valid range is: 11 - 75"));
+  EXPECT_EQ(controller.state()["popup"], "The Soft Gripper Grip command returned with error.");
   EXPECT_EQ(width(), 40.0);
 }
 
 TEST_F(SoftGripperTest, SticksUntilReleased)
 {
   ASSERT_TRUE(controller.control({{"command", "gripper"}, {"stuck", true}})["ok"]);
-  run_script(" sg_grip(15)");
+  run_script(" sg_grip(15, False)");
   ASSERT_TRUE(wait_simulated_time(controller, 2.0, seconds(20)));
   EXPECT_EQ(controller.state()["program"]["state"], "PLAYING");
   EXPECT_TRUE(controller.state()["gripper"]["busy"]);

@@ -20,21 +20,24 @@ class GripperOperation final : public urscript::PendingCall {
   const SoftGripper & gripper_;
 };
 
-constexpr int no_answer = -1;  // of the functions, from a gripper that the URCap does not reach
+/// The functions of the URCap show a popup and halt the program (OnRobot's URCap 6.0.2).
+Outcome halt(CallContext & context, std::string message)
+{
+  urscript::Popup popup;
+  popup.title = "OnRobot - Soft Gripper error";
+  popup.message = std::move(message);
+  popup.error = true;
+  context.host.show_popup(popup);
+  return urscript::Halt{};
+}
 
 Outcome move_to(SoftGripper & gripper, CallContext & context, double width, bool gentle, bool blocking)
 {
   if (width < SoftGripper::min_width || width > SoftGripper::max_width) {
-    urscript::Popup popup;
-    popup.title = "OnRobot";
-    popup.message = fmt::format("Invalid parameter for Soft Gripper width {:g}, valid range is: {:g} - {:g}",
-                                width, SoftGripper::min_width, SoftGripper::max_width);
-    popup.warning = true;
-    context.host.show_popup(popup);
-    return NextCycle{Value(no_answer)};
+    return halt(context, "The Soft Gripper Grip command returned with error.");
   }
   if (!gripper.is_powered()) {
-    return NextCycle{Value(no_answer)};
+    return halt(context, "Communication problem with a Soft Gripper. Please check the device.");
   }
   gripper.move_to(width, gentle);
   if (!blocking) {
@@ -69,12 +72,11 @@ Outcome release(SoftGripper & gripper, CallContext & context, Arguments argument
   return reader ? move_to(gripper, context, width, false, blocking) : reader.failure();
 }
 
-Outcome width(const SoftGripper & gripper, Arguments arguments)
+Outcome width(const SoftGripper & gripper, CallContext & context)
 {
-  ArgumentReader reader(arguments);
-  check_tool(reader, 0);
-  const double reported = gripper.is_powered() ? gripper.width() : no_answer;
-  return reader ? Outcome(Value(reported)) : reader.failure();
+  return gripper.is_powered()
+             ? Outcome(Value(gripper.width()))
+             : halt(context, "Communication problem with a Soft Gripper. Please check the device.");
 }
 
 }  // namespace
@@ -88,11 +90,11 @@ void add_gripper_builtins(Library & library, const RobotContextPtr & robot)
   library.add(
       {"sg_grip",
        {"target_width",
-        {"gentle_grip", Value(false)},
+        "gentle_grip",
         {"tool_index", Value(0)},
         {"blocking", Value(true)},
         {"depth_compensation", Value(false)}},
-       1,
+       2,
        [gripper](CallContext & context, Arguments arguments) { return grip(*gripper, context, arguments); }});
   library.add({"sg_release",
                {"target_width",
@@ -103,12 +105,10 @@ void add_gripper_builtins(Library & library, const RobotContextPtr & robot)
                [gripper](CallContext & context, Arguments arguments) {
                  return release(*gripper, context, arguments);
                }});
-  for (const char * name : {"get_sg_Width", "sg_get_width"}) {
-    library.add({name, {{"tool_index", Value(0)}}, 0, [gripper](CallContext &, Arguments arguments) {
-                   return width(*gripper, arguments);
-                 }});
-  }
-  library.add({"sg_busy", {{"tool_index", Value(0)}}, 0, [gripper](CallContext &, Arguments) -> Outcome {
+  library.add({"get_sg_Width", {}, 0, [gripper](CallContext & context, Arguments) {
+                 return width(*gripper, context);
+               }});
+  library.add({"get_sg_Busy", {}, 0, [gripper](CallContext &, Arguments) -> Outcome {
                  return Value(gripper->is_busy());
                }});
 }
