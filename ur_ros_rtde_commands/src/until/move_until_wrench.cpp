@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 
@@ -18,12 +17,6 @@ geometry_msgs::msg::Vector3 to_ros(const Vector3 & v)
   message.y = v[1];
   message.z = v[2];
   return message;
-}
-
-/// Unlike std::hypot of three values, returns NaN for a NaN.
-double length(const Vector3 & v)
-{
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 double distance(const Vector6 & from, const Vector6 & to)
