@@ -45,6 +45,7 @@ struct LeaseTest : RobotFixture {
     controller.control({{"command", "stop_program"}});
     ASSERT_TRUE(becomes_ready_again());
     ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); }));
+    ASSERT_TRUE(eventually([&] { return at_rest(); })) << "it takes some cycles to detect it";
   }
 };
 

@@ -46,7 +46,7 @@ TEST_F(QueryTest, ForwardKinematicsUseTheGivenTcp)
   const Joints tcp{0.0, 0.0, 0.1, 0.0, 0.0, 0.0};
   const auto flange = control()->getForwardKinematics(elsewhere, Joints(6, 0.0));
   ASSERT_TRUE(control()->setTcp(tcp));
-  EXPECT_EQ(control()->getTCPOffset(), tcp);
+  EXPECT_LT(distance(control()->getTCPOffset(), tcp), 1e-7) << "registers have 32 bits";
   control()->poseTrans({1.0, 2.0, 3.0, 0.0, 0.0, 0.0}, {4.0, 5.0, 6.0, 0.0, 0.0, 0.0});
   const auto with_active = control()->getForwardKinematics(elsewhere, {});
   const auto with_given = control()->getForwardKinematics(elsewhere, tcp);
@@ -107,13 +107,13 @@ TEST_F(QueryTest, DynamicsUseTheirArguments)
   auto before = elsewhere;
   auto after = elsewhere;
   for (std::size_t i = 0; i < 6; ++i) {
-    before[i] -= 1e-4 * turning[i];
-    after[i] += 1e-4 * turning[i];
+    before[i] -= 1e-3 * turning[i];
+    after[i] += 1e-3 * turning[i];
   }
   const auto from = control()->getJacobian(before, Joints(6, 0.0));
   const auto to = control()->getJacobian(after, Joints(6, 0.0));
   for (std::size_t i = 0; i < 36; ++i) {
-    EXPECT_NEAR(derivative[i], (to[i] - from[i]) / 2e-4, 1e-4);
+    EXPECT_NEAR(derivative[i], (to[i] - from[i]) / 2e-3, 1e-4);
   }
 }
 

@@ -219,7 +219,7 @@ class AnswersStopLate(PassesOn):
 
 def test_a_stop_succeeds_without_the_answer_of_a_busy_dashboard_server(addresses, processes):
     AnswersStopLate.ended.clear()
-    with robot_behind(AnswersStopLate, addresses, processes, "busy", "plugins:=[send_script,stop]") as (client, simulator):
+    with robot_behind(AnswersStopLate, addresses, processes, "busy", "plugins:=[move_j,send_script,stop]") as (client, simulator):
         script = client.send(SendScript, "send_script", script=f"movej({home_plus(3.0)}, a=1, v=0.2)")
         wait_for(lambda: not simulator.is_at_rest(), 15.0, "a motion")
         client.send(Stop, "stop").succeeded()

@@ -196,6 +196,16 @@ TEST_F(ControlScriptTest, UsesFewInstructions)
   RecordProperty("instructions", static_cast<int>(fixture.machine->instructions()));
 }
 
+TEST_F(ControlScriptTest, TakesTheLimitsOfTheLookaheadTime)
+{
+  for (const double limit : {0.03, 0.2}) {
+    parameters(fixture.state.target.position, {0.5, 0.5, 0.002, limit, 300.0, 0.0});
+    fixture.state.inputs.integers[0] = 11;
+    fixture.cycles(10);
+    expect_running();
+  }
+}
+
 struct ContactDuringMotionTest : ControlScriptTest {
   double contact_height = 0.0;
 

@@ -121,7 +121,7 @@ TEST_F(ServoSetpointsTest, WithoutTimesCauseDoubleSteps)
     fixture.cycle();
     largest = cycle == 0 ? 0.0 : std::max(largest, (target() - before) / step);
   }
-  EXPECT_NEAR(largest, 2.0, 1e-6) << "this is what the times prevent";
+  EXPECT_NEAR(largest, 2.0, tolerance / step) << "this is what the times prevent";
 }
 
 TEST_F(ServoSetpointsTest, StandStillInALongGapAndThenContinueWhereTheyWere)
