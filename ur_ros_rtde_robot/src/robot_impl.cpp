@@ -163,9 +163,9 @@ Error Robot::Impl::program_ended_error() const
             "most {:.0f} ms are allowed (watchdog_frequency); {}",
             1e3 * gap, 1e3 / frequency, then)};
   }
-  const char * by = frequency > 0.0 ? "on the pendant, by another client, or by its watchdog if the "
-                                      "connection to it is interrupted"
-                                    : "on the pendant or by another client";
+  const char * by = frequency > 0.0 ? "on the pendant, by another client, by an error (see the pendant's log), "
+                                      "or by its watchdog if the connection to it is interrupted"
+                                    : "on the pendant, by another client, or by an error (see the pendant's log)";
   return {ErrorCode::program_stopped,
           fmt::format("the control program was stopped {} (runtime state {}); {}", by,
                       to_string(state.latest().value_or(Sample{}).runtime_state), then)};
