@@ -122,6 +122,7 @@ PARAMETERS = (
     Argument("control_mode", "upload", "How the robot receives the control program. upload: the driver sends it. control_urcap: "
              "the External Control URCap fetches it.", ("upload", "control_urcap")),
     Argument("urcap_port", 50002, "Port at which the External Control URCap requests the control program.", limits=(1, 65535)),
+    Argument("urcap_extensions", False, "With control_urcap: the robot has the URCaps whose functions commands need."),
     Argument("register_range", "lower", "General purpose registers of the driver. lower: 0 to 23. upper: 24 to 47, for robots on "
              "which a fieldbus uses the lower registers.", ("lower", "upper")),
     Argument("watchdog_frequency", 10.0, "Minimum rate in Hz of the driver's heartbeats. The robot stops the arm after "

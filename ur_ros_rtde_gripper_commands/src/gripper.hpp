@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 #include <ur_ros_rtde/check.hpp>
@@ -36,7 +38,13 @@ template <typename Run>
 ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
 {
   if (auto outcome = run.trigger(timeout); !outcome) {
-    return outcome;
+    return outcome.code() != ur_ros_rtde::ErrorCode::program_stopped
+               ? outcome
+               : ur_ros_rtde::Outcome::failure(
+                     outcome.code(),
+                     fmt::format("{}; a popup of the OnRobot URCap tells why (power, cable, a width that the "
+                                 "fingers do not have)",
+                                 outcome.message()));
   }
   run.result().width = run.registers().get_double(19) / millimeters_per_meter;
   return ur_ros_rtde::Outcome::success();

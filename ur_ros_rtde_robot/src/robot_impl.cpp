@@ -64,7 +64,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
       model(options.address, options.model, log),
-      control_scripts(options.upper_range_registers, options.control_mode, log),
+      control_scripts(options, log),
       interfaces(options, control_scripts, log),
       registers(options, interfaces),
       activities(interfaces, registers, tracker),
@@ -82,6 +82,7 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
       manager(options, state, dashboard, model, interfaces, server, log),
       scripts(options, state, tracker, activities, stopper, manager, [this] { return generation(); }),
       extensions(options, state, tracker, registers, control_scripts),
+      log_(log),
       watchdog_frequency_(options.watchdog_frequency)
 {
   state.on_link([this](const LinkStatus &) { manager.wake(); });
@@ -94,9 +95,21 @@ void Robot::Impl::add(const Sample & sample)
 {
   tracker.add(sample);
   feed_watchdog(sample);
+  warn_of_zeroed_force(zeroed_force_.add(sample));
   manager.on_sample(sample);
   if (sample_function) {
     sample_function(sample);
+  }
+}
+
+void Robot::Impl::warn_of_zeroed_force(double force) const
+{
+  constexpr double contact = 10.0;  // N, above the noise and a slightly wrong payload
+  if (force > contact && !state.version().value_or(ControllerVersion{}).cb3()) {
+    log_(LogLevel::warn, fmt::format("the start of a program has zeroed the force sensor, which measured "
+                                     "{:.0f} N: forces are relative to that. Without contact, check the "
+                                     "payload (set_payload) and call zero_ft_sensor",
+                                     force));
   }
 }
 
@@ -163,9 +176,10 @@ Error Robot::Impl::program_ended_error() const
             "most {:.0f} ms are allowed (watchdog_frequency); {}",
             1e3 * gap, 1e3 / frequency, then)};
   }
-  const char * by = frequency > 0.0 ? "on the pendant, by another client, by an error (see the pendant's log), "
-                                      "or by its watchdog if the connection to it is interrupted"
-                                    : "on the pendant, by another client, or by an error (see the pendant's log)";
+  const char * by = frequency > 0.0 ? "on the pendant, by another client, by an error (see the pendant's "
+                                      "log), or by its watchdog if the connection to it is interrupted"
+                                    : "on the pendant, by another client, or by an error (see the pendant's "
+                                      "log)";
   return {ErrorCode::program_stopped,
           fmt::format("the control program was stopped {} (runtime state {}); {}", by,
                       to_string(state.latest().value_or(Sample{}).runtime_state), then)};

@@ -16,6 +16,7 @@
 #include "program/execution/script_runner.hpp"
 #include "program/script_server.hpp"
 #include "state/arm_model.hpp"
+#include "state/zeroed_force.hpp"
 #include "ur_ros_rtde_robot/connection/dashboard_connection.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 #include "ur_ros_rtde_robot/state/state_receiver.hpp"
@@ -64,6 +65,10 @@ class Robot::Impl {
 
  private:
   void end_program();
+  void warn_of_zeroed_force(double force) const;
+
+  const LogFunction log_;
+  ZeroedForce zeroed_force_;                           ///< receiving thread only
   std::chrono::steady_clock::time_point last_kick_{};  ///< receiving thread only
   std::atomic<double> watchdog_frequency_;             ///< Hz, of the fastest watchdog that may be running
 };

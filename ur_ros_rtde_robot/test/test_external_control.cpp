@@ -124,23 +124,31 @@ TEST_F(ExternalControlTest, LeavesCodeOutThatIsIncompleteInThisVersionOfTheContr
 /// PolyScope would not start a program with an unknown function.
 TEST_F(ExternalControlTest, HasTheExtensionsOfAUrcapOnlyIfTheUserSaysThatItIsInstalled)
 {
-  controller.start();
+  auto simulator = Controller::options();
+  simulator.urcaps = {"onrobot_soft_gripper"};
+  controller.start(simulator);
   controller.control({{"command", "store_external_control"}, {"host", own_address()}, {"port", port}});
-  robot = std::make_unique<Robot>(options(), log.function());
-  ScriptExtension feeder;
-  feeder.name = "feeder";
-  feeder.snippet = "feeder_open()";
-  feeder.urcap = "the Feeder URCap";
-  feeder.urcap_functions = {"feeder_open"};
-  ASSERT_TRUE(robot->set_extensions({feeder}).empty());
-  robot->start();
-  ASSERT_TRUE(waits_for_play());
-  play();
-  ASSERT_TRUE(becomes_ready()) << log.text();
-  const auto rejected = robot->has_extension("feeder");
-  ASSERT_FALSE(rejected);
-  EXPECT_NE(rejected.error().message.find("name feeder in the parameter plugins"), std::string::npos)
-      << rejected.error().message;
+  ScriptExtension gripper;
+  gripper.name = "gripper";
+  gripper.snippet = "get_sg_Width()";
+  gripper.urcap = "the OnRobot URCap";
+  gripper.urcap_functions = {"get_sg_Width"};
+  for (const bool is_installed : {false, true}) {
+    auto robot_options = options();
+    robot_options.urcap_extensions = is_installed;
+    robot = std::make_unique<Robot>(robot_options, log.function());
+    ASSERT_TRUE(robot->set_extensions({gripper}).empty());
+    robot->start();
+    ASSERT_TRUE(waits_for_play());
+    play();
+    ASSERT_TRUE(becomes_ready()) << log.text();
+    const auto found = robot->has_extension("gripper");
+    EXPECT_EQ(found.has_value(), is_installed);
+    if (!found) {
+      EXPECT_NE(found.error().message.find("urcap_extensions"), std::string::npos) << found.error().message;
+    }
+    robot.reset();
+  }
 }
 
 TEST_F(ExternalControlTest, EndsTheMotionAndWaitsForPlayWhenStoppedOnThePendant)
@@ -195,25 +203,6 @@ TEST_F(ExternalControlTest, EndsTheProgramWithItsNode)
   static_cast<void>(control()->stopScript());
   ASSERT_TRUE(eventually([&] { return !robot->latest()->is_program_running(); }));
   EXPECT_TRUE(keeps_still());
-}
-
-/// Torques end with the control program. The next node would begin while the arm moves.
-TEST_F(ExternalControlTest, EndsTheWholeProgramAfterTorques)
-{
-  start(options());
-  controller.control({{"command", "store_external_control"},
-                      {"host", own_address()},
-                      {"port", port},
-                      {"next", "set_standard_digital_out(3, True)"}});
-  play();
-  ASSERT_TRUE(becomes_ready());
-  ASSERT_TRUE(control()->directTorque({20.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
-  ASSERT_TRUE(eventually([&] { return robot->is_moving(); })) << log.text();
-  const auto report = robot->stop_motion();
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->means, StopMeans::stop_command);
-  EXPECT_TRUE(at_rest());
-  EXPECT_EQ(controller.state().at("io").at("digital_outputs"), 0) << "the next node has begun";
 }
 
 TEST_F(ExternalControlTest, DoesNotResumeTheMotionOfAPausedProgram)

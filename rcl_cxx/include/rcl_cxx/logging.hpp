@@ -21,6 +21,7 @@ struct LogLocation {
 };
 
 /// A named logger. Messages go to the console and the log file; those of a node's logger to /rosout, too.
+/// While nobody reads the console (Ctrl-S, a full pipe), messages are counted instead, and no thread waits.
 /// Cheap to copy, thread-safe. Use it through the RCL_CXX_… macros:
 ///
 ///     RCL_CXX_INFO(node->get_logger(), "connected to {} in {:.1f} s", host, seconds);

@@ -1,7 +1,5 @@
 #include "nodes/command_server.hpp"
 
-#include <algorithm>
-
 #include "diagnostics/plugin_problems.hpp"
 #include "nodes/node_log.hpp"
 #include "plugins/plugin_selection.hpp"
@@ -66,10 +64,9 @@ void CommandServer::create_actions()
 void CommandServer::add_extensions(const ReportProblem & report)
 {
   std::vector<ScriptExtension> extensions;
-  const auto add = [&](const PluginEntry & entry, const CommandPlugin & plugin) {
+  const auto add = [&extensions](const PluginEntry & entry, const CommandPlugin & plugin) {
     if (auto extension = plugin.script_extension()) {
       extension->name = entry.name;
-      extension->urcap_is_installed = std::ranges::find(choice_.plugins, entry.name) != choice_.plugins.end();
       extensions.push_back(std::move(*extension));
     }
   };

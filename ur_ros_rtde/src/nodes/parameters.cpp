@@ -211,6 +211,9 @@ CommandServerParameters declare_command_server(rcl_cxx::Node & node)
   auto port = read_only_descriptor("Port on which this node serves the External Control URCap");
   port.integer_range = rcl_cxx::IntegerRange{1, 65535};
   robot.urcap_port = static_cast<std::uint16_t>(node.declare_parameter<int>("urcap_port", 50002, port));
+  robot.urcap_extensions = node.declare_parameter(
+      "urcap_extensions", false,
+      read_only_descriptor("With control_urcap: the robot has the URCaps whose functions commands need"));
   robot.silence_limit = declare_silence_limit(node);
   robot.realtime_priority = declare_realtime_priority(node);
   robot.watchdog_frequency = declare_watchdog_frequency(node, robot.watchdog_frequency);

@@ -13,8 +13,7 @@ READY_WITH_COMMANDS = ("POWER_OFF", "POWER_ON", "IDLE")  # make_ready changes th
 SAFETY_REMEDIES = {
     "PROTECTIVE_STOP": "remove what the arm has run into, then `ur call make_ready`",
     "SAFEGUARD_STOP": "close the guard, or reset the safeguard input",
-    "AUTOMATIC_MODE_SAFEGUARD_STOP": "close the guard, or reset the safeguard input",
-    "SYSTEM_THREE_POSITION_ENABLING_STOP": "press the enabling device, or select the automatic mode",
+    "ENABLING_STOP": "press the enabling device, or select the automatic mode",
     "ROBOT_EMERGENCY_STOP": "find out why it was pressed, release the button, then `ur call make_ready`",
     "SYSTEM_EMERGENCY_STOP": "find out which device of the cell stops the robot, release it, then `ur call make_ready`",
     "RECOVERY": "move the arm back inside its safety limits on the pendant",
@@ -38,7 +37,8 @@ def judge_safety(status: str) -> Finding:
     if status == "REDUCED":
         return warning("safety", "REDUCED: the reduced limits of the safety configuration apply",
                        "motions beyond them end in a protective stop; leave the reduced mode, or move more slowly")
-    return fault("safety", status, SAFETY_REMEDIES.get(status, "look at the pendant"))
+    kind = next((kind for kind in ("SAFEGUARD_STOP", "ENABLING_STOP") if status.endswith(kind)), "")
+    return fault("safety", status, SAFETY_REMEDIES.get(status, SAFETY_REMEDIES.get(kind, "look at the pendant")))
 
 
 def judge_remote_control(answer: str, cb3: bool, version: str) -> Finding:

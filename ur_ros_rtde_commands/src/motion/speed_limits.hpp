@@ -17,11 +17,10 @@ struct SpeedLimits {
 constexpr SpeedLimits joint_speed_limits{3.14, "rad/s", 40.0, "rad/s^2"};
 constexpr SpeedLimits linear_speed_limits{3.0, "m/s", 150.0, "m/s^2"};
 
-/// Upper limits of decelerations in goals. The control script stops servo motion with stopl, which is why its
-/// limit is linear.
+/// Limits of decelerations in goals.
 constexpr double max_joint_deceleration = 40.0;    // rad/s^2
 constexpr double max_linear_deceleration = 150.0;  // m/s^2
-constexpr double max_servo_deceleration = 40.0;    // m/s^2
+constexpr double max_servo_deceleration = 40.0;    // rad/s^2 or m/s^2
 constexpr double min_deceleration = 0.1;           // rad/s^2 or m/s^2
 
 /// Checks the fields `speed` and `acceleration` of a goal, or of a waypoint of a goal with `prefix`

@@ -30,6 +30,7 @@ void StartupSequence::command(const std::string & line, const std::string & repl
   }
   last_command_ = line;
   last_command_time_ = now;
+  last_rejection_.clear();  // unknown until the answer
   run_.unless_stopped([&] {
     const Status status = command_dashboard(dashboard_, line, reply);
     last_rejection_ = status ? "" : "; " + status.error().message;
@@ -41,9 +42,9 @@ void StartupSequence::command(const std::string & line, const std::string & repl
 void StartupSequence::close_popups()
 {
   if (goal_.close_popups && !popups_closed_) {
-    popups_closed_ = true;
     send_to_dashboard(dashboard_, "close popup");
     send_to_dashboard(dashboard_, "close safety popup");
+    popups_closed_ = true;
   }
 }
 

@@ -23,6 +23,9 @@ struct RobotOptions {
   double frequency = 0.0;
   ControlMode control_mode = ControlMode::upload;
   std::uint16_t urcap_port = 50002;
+  /// With control_urcap: the robot has the URCaps whose functions extensions need. Otherwise these are not in
+  /// the program, because PolyScope does not start one with an unknown function.
+  bool urcap_extensions = false;
   /// Use the general purpose registers 24-47 instead of 0-23, for example if a fieldbus uses the lower range.
   /// The mass matrix and the Jacobians of PolyScope 5.23 and later need registers of both ranges and are not
   /// available then.

@@ -238,12 +238,12 @@ Status MotionStopper::end_modes(Activities started)
   return {};
 }
 
-/// Success also without an answer in time: the end of the program is what counts.
-Status MotionStopper::request_program_stop() const
+/// Success also without an answer in time if the samples will show the end of the program.
+Status MotionStopper::request_program_stop(bool end_is_seen) const
 {
   constexpr milliseconds answer_timeout(500);
   Status stopped = stop_program(options_.address, answer_timeout);
-  return !stopped && stopped.error().code == ErrorCode::timeout ? Status() : stopped;
+  return end_is_seen && !stopped && stopped.error().code == ErrorCode::timeout ? Status() : stopped;
 }
 
 Status MotionStopper::stop_by_dashboard(const StopOptions & options)
@@ -252,7 +252,7 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
   activities_.fence_script();
   const bool may_begin =
       !before.program_running && activities_.now().contains(Activity::script);  // a script, after the stop
-  const Status ended = may_begin ? stop_script(before) : request_program_stop();
+  const Status ended = may_begin ? stop_script(before) : request_program_stop(before.program_running);
   if (!ended) {
     return ended;
   }
@@ -277,9 +277,9 @@ Status MotionStopper::stop_script(const MotionTracker::View & before)
     return view.program_running || view.program != before.program || activities_.script_compiled() ||
            !has_script();
   };
-  Status stopped = request_program_stop();
+  Status stopped = request_program_stop(true);
   if (stopped && !begun && has_script() && wait_for(compile_timeout, begins) && has_script()) {
-    stopped = request_program_stop();
+    stopped = request_program_stop(true);
   }
   if (!stopped) {
     return stopped;

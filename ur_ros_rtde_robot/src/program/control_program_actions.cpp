@@ -8,7 +8,6 @@
 #include "connection/skew.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/program_status.hpp"
-#include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -117,7 +116,6 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
-  const Sample before = receiver_.latest().value_or(Sample{});
   const auto started =
       interfaces_.start_control(receiver_.version().value_or(ControllerVersion{}), stop_.get_token());
   if (!started) {
@@ -140,25 +138,8 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
                        "the control program ended at once: look at the pendant's log"};
   }
   next_start_ = {};
-  warn_of_zeroed_force(before);
   dispatch(ProgramEvent::program_started);
   return std::nullopt;
-}
-
-/// A controller with a force sensor zeroes it at the start of each program (Universal_Robots_ROS_Driver,
-/// issues 512 and 643).
-void ControlProgramManager::warn_of_zeroed_force(const Sample & before) const
-{
-  constexpr double contact = 10.0;  // N, above the noise and a slightly wrong payload
-  const double force = length(position(before.actual_tcp_force));
-  if (!receiver_.version().value_or(ControllerVersion{}).cb3() && force > contact) {
-    logger_.log(
-        LogLevel::warn,
-        fmt::format("the controller has zeroed the force sensor with the start of the control program, "
-                    "while it measured {:.0f} N: forces are relative to that. Without contact, check "
-                    "the payload (set_payload) and call zero_ft_sensor",
-                    force));
-  }
 }
 
 void ControlProgramManager::wait_after_failed_start()

@@ -115,7 +115,6 @@ class ControlProgramManager {
   void suspend_program();
   RobotStatus interface_failed(const Error & error);
   Status end_program();
-  void warn_of_zeroed_force(const Sample & before) const;
   /// False if the connection was lost, even if there is a new one.
   bool follows_newest_link() const;
   bool wait_for_program(ProgramActivity program, std::chrono::milliseconds timeout) const;

@@ -8,7 +8,7 @@ import numpy as np
 
 MAX_REJECTIONS = 20
 SILENT = 1.0  # s without joint states
-STOPPED_MODES = ("PROTECTIVE_STOP", "SAFEGUARD_STOP", "SYSTEM_EMERGENCY_STOP", "ROBOT_EMERGENCY_STOP", "VIOLATION", "FAULT")
+OTHER_MODES = ("", "NORMAL", "REDUCED", "RECOVERY", "VALIDATE_JOINT_ID", "UNDEFINED", "PROFISAFE_WAITING_FOR_PARAMETERS")  # than a stop
 
 
 @dataclass(frozen=True)
@@ -90,4 +90,4 @@ class RobotState:
     @property
     def is_stopped(self) -> bool:
         """Whether a safety function has stopped the arm."""
-        return self.safety_mode in STOPPED_MODES
+        return self.safety_mode not in OTHER_MODES

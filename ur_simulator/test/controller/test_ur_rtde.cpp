@@ -188,7 +188,9 @@ TEST_F(UrRtdeControlTest, ZeroesForceSensorAndSetsPayloadAndTcp)
   EXPECT_TRUE(control.setPayload(1.5, {0.0, 0.0, 0.05}));
   EXPECT_TRUE(control.setTcp({0.0, 0.0, 0.1, 0.0, 0.0, 0.0}));
   EXPECT_TRUE(controller.wait_until(
-      [](const json & state) { return state["payload"]["mass"] == 1.5 && state["tcp_offset"][2] == 0.1; },
+      [](const json & state) {
+        return state["payload"]["mass"] == 1.5 && std::abs(state["tcp_offset"][2].get<double>() - 0.1) < 1e-7;
+      },
       seconds(5)));
 }
 

@@ -234,6 +234,8 @@ struct ContactDuringMotionTest : ControlScriptTest {
 TEST_F(ContactDuringMotionTest, EndsAStream)
 {
   constexpr std::int32_t speed_l = 10;
+  constexpr std::int32_t speed_stop = 15;
+  constexpr std::int32_t get_step_time = 26;
   const Vector6 down = (Vector6() << 0.0, 0.0, -0.05, 0.0, 0.0, 0.0).finished();
   parameters(down, {0.5, 0.0});
   fixture.state.inputs.integers[0] = speed_l;
@@ -242,8 +244,13 @@ TEST_F(ContactDuringMotionTest, EndsAStream)
   EXPECT_NEAR(fixture.state.target_tcp_pose[2], contact_height, 2e-3);
   EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9);
 
-  fixture.state.inputs.integers[0] = 0;
-  fixture.cycles(2);
+  command(get_step_time);
+  parameters(down, {0.5, 0.0});
+  fixture.state.inputs.integers[0] = speed_l;
+  fixture.cycles(200);
+  EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9) << "another command does not revive the stream";
+
+  command(speed_stop);
   parameters(-down, {0.5, 0.0});
   fixture.state.inputs.integers[0] = speed_l;
   fixture.cycles(200);

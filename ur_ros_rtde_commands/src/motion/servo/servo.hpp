@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "motion/servo/servo_profile.hpp"
@@ -11,21 +12,21 @@
 namespace ur_ros_rtde {
 
 template <typename Goal>
-Check & check_servo_deceleration(Check & check, const Goal & goal)
+Check & check_servo_deceleration(Check & check, const Goal & goal, std::string_view unit)
 {
-  return check.in_range("deceleration", goal.deceleration, min_deceleration, max_servo_deceleration, "m/s^2");
+  return check.in_range("deceleration", goal.deceleration, min_deceleration, max_servo_deceleration, unit);
 }
 
 /// Checks the fields that the goals of servo_j and servo_l have in common.
 template <typename Goal>
-Check & check_servo(Check & check, const Goal & goal)
+Check & check_servo(Check & check, const Goal & goal, std::string_view unit_of_deceleration)
 {
   if (goal.time != 0.0) {
     check.in_range("time", goal.time, 0.01, 600.0, "s");
   }
   check.in_range("lookahead_time", goal.lookahead_time, 0.03, 0.2, "s")
       .in_range("gain", goal.gain, 100.0, 2000.0);
-  return check_servo_deceleration(check, goal);
+  return check_servo_deceleration(check, goal, unit_of_deceleration);
 }
 
 /// The setpoints of joints stop in joint space, those of poses along the path of the TCP.
@@ -44,7 +45,7 @@ struct ServoStep {
 
 struct ServoMotion {
   double duration;      ///< s
-  double deceleration;  ///< m/s^2, at its end
+  double deceleration;  ///< rad/s^2 or m/s^2, at its end
   /// Repeated where the motion begins: Run::check_again().
   std::function<void(Check &)> check;
   /// Its setpoints are poses: see check_joint_velocities().

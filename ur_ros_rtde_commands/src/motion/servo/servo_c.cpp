@@ -12,7 +12,7 @@ class ServoC : public Command<ur_ros_rtde_msgs::action::ServoC> {
   {
     check_speed(check.pose("pose", goal.pose), goal, linear_speed_limits)
         .in_range("blend_radius", goal.blend_radius, 0.0, 2.0, "m");
-    check_tcp_target(check_servo_deceleration(check, goal), goal);
+    check_tcp_target(check_servo_deceleration(check, goal, "m/s^2"), goal);
   }
 
   StopOptions stop_options(const Goal & goal) const override { return servo_stop_options(goal); }

@@ -16,7 +16,7 @@ class ServoJ : public Command<ur_ros_rtde_msgs::action::ServoJ> {
   void check(const Goal & goal, Check & check) const override
   {
     check.joints("joint_positions", goal.joint_positions);
-    if (check_servo(check, goal).ok() && goal.time > 0.0) {
+    if (check_servo(check, goal, "rad/s^2").ok() && goal.time > 0.0) {
       check_in_time(check, goal.joint_positions, goal.time);
     }
   }

@@ -10,7 +10,7 @@ class ServoL : public Command<ur_ros_rtde_msgs::action::ServoL> {
   void check(const Goal & goal, Check & check) const override
   {
     check.pose("pose", goal.pose);
-    check_tcp_target(check_servo(check, goal), goal);
+    check_tcp_target(check_servo(check, goal, "m/s^2"), goal);
     if (const auto start = check.start(); start && goal.time > 0.0) {
       check_tcp_speed(check, start->actual_tcp_pose, tcp_target(goal, *start), goal.time);
     }

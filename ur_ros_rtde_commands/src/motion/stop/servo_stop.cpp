@@ -7,7 +7,7 @@ class ServoStop : public DecelerateCommand {
  public:
   ServoStop()
       : DecelerateCommand({&StopOptions::joint_deceleration, &StopOptions::linear_deceleration},
-                          max_servo_deceleration, "m/s^2")
+                          max_servo_deceleration, "rad/s^2 or m/s^2")
   {
   }
 };

@@ -41,7 +41,7 @@ enum class StopMeans {
 const char * to_string(StopMeans means);
 
 struct StopOptions {
-  /// rad/s^2 for joint motion (stopj), m/s^2 for Cartesian and servo motion (stopl); useful range: 0.5 to 10.
+  /// rad/s^2 for motions in joint space (stopj), m/s^2 for others (stopl); useful range: 0.5 to 10.
   double joint_deceleration = 2.0;
   double linear_deceleration = 2.0;
   /// Time allowed for the commanded deceleration. After that, or if the arm does not decelerate, the program

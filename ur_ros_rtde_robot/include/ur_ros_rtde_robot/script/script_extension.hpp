@@ -34,9 +34,6 @@ struct ScriptExtension {
   /// is not an error; goals are rejected with a message that names what to install.
   std::string urcap{};
   std::vector<std::string> urcap_functions{};
-  /// The user says that the robot has this software. A program of the External Control URCap has the
-  /// extension only then: PolyScope would not start one with an unknown function.
-  bool urcap_is_installed = false;
   /// The registers keep their values between runs, so no other extension may use them. Otherwise extensions
   /// share registers, since only one runs at a time.
   bool exclusive = false;

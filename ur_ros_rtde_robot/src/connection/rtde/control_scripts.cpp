@@ -53,13 +53,13 @@ std::vector<std::string> ControlScripts::set(const std::vector<ScriptExtension> 
   extensions_.clear();
   left_out_.clear();
   for (const ScriptExtension & extension : extensions) {
-    if (mode_ == ControlMode::control_urcap && !extension.urcap.empty() && !extension.urcap_is_installed) {
-      const std::string why = fmt::format(
-          "it needs {}: if the robot has it, name {} in the parameter plugins. The program of the External "
-          "Control URCap would not start without it",
-          extension.urcap, extension.name);
-      left_out_.try_emplace(extension.name, LeftOut{extension.name, why});
-      log_(LogLevel::info, fmt::format("the extension {} is left out: {}", extension.name, why));
+    if (needs_missing_urcap(extension)) {
+      left_out_.try_emplace(
+          extension.name,
+          LeftOut{extension.name,
+                  fmt::format("it needs {}: if the robot has it, set the parameter urcap_extensions. The "
+                              "program of the External Control URCap would not start without it",
+                              extension.urcap)});
       continue;
     }
     extensions_.push_back(extension);
@@ -74,6 +74,12 @@ std::vector<std::string> ControlScripts::set(const std::vector<ScriptExtension> 
   return problems;
 }
 
+bool ControlScripts::needs_missing_urcap(const ScriptExtension & extension) const
+{
+  return options_.control_mode == ControlMode::control_urcap && !options_.urcap_extensions &&
+         !extension.urcap.empty();
+}
+
 bool ControlScripts::has_extensions() const
 {
   const std::lock_guard lock(mutex_);
@@ -83,7 +89,7 @@ bool ControlScripts::has_extensions() const
 script::Result<script::ControlScript> ControlScripts::resolved(const script::ControlScript & script,
                                                                const ControllerVersion & version) const
 {
-  return script::for_controller(script, version.major, version.minor, upper_range_);
+  return script::for_controller(script, version.major, version.minor, options_.upper_range_registers);
 }
 
 std::string ControlScripts::resolved_text(const script::ControlScript & script,
@@ -175,7 +181,8 @@ std::optional<ControlScripts::LeftOut> ControlScripts::leave_out(const Controlle
     left_out.urcap = culprit->urcap;
     left_out.why = fmt::format(
         "the robot does not know the function {} in a program of the driver: install {} on it and "
-        "use control_mode: control_urcap. The functions of a URCap belong to the programs of the "
+        "use control_mode: control_urcap with urcap_extensions. The functions of a URCap belong to the "
+        "programs of the "
         "pendant",
         function, culprit->urcap);
   }
@@ -201,7 +208,8 @@ std::string ControlScripts::missing_urcaps_message() const
   return parts.empty() ? std::string()
                        : fmt::format(
                              "unknown in programs of the driver: {}; goals for these commands are rejected; "
-                             "to use them, install it on the robot and use control_mode: control_urcap",
+                             "to use them, install it on the robot and use control_mode: control_urcap with "
+                             "urcap_extensions",
                              fmt::join(parts, "; "));
 }
 

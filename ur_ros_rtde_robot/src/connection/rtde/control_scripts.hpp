@@ -19,10 +19,7 @@ namespace ur_ros_rtde {
 /// Composes the control script: that of ur_rtde plus the code of the extensions. Thread-safe.
 class ControlScripts {
  public:
-  ControlScripts(bool upper_range_registers, ControlMode mode, LogFunction log)
-      : upper_range_(upper_range_registers), mode_(mode), log_(std::move(log))
-  {
-  }
+  ControlScripts(const RobotOptions & options, LogFunction log) : options_(options), log_(std::move(log)) {}
 
   /// Replaces the extensions. Returns one message per faulty one, which is omitted, with the reason.
   std::vector<std::string> set(const std::vector<ScriptExtension> & extensions);
@@ -58,10 +55,10 @@ class ControlScripts {
  private:
   script::Result<script::ControlScript> resolved(const script::ControlScript & script,
                                                  const ControllerVersion & version) const;
+  bool needs_missing_urcap(const ScriptExtension & extension) const;
   std::string resolved_text(const script::ControlScript & script, const ControllerVersion & version) const;
 
-  const bool upper_range_;
-  const ControlMode mode_;
+  const RobotOptions options_;
   const LogFunction log_;
   mutable std::mutex mutex_;
   std::vector<ScriptExtension> extensions_;
