@@ -149,7 +149,7 @@ def plain(default):
     text = default.split(" ")[0].strip('`"')
     if text in ("none", "all"):
         return ()
-    return float(text) if re.match(r"\d", text) else {"true": True}.get(text, text)
+    return float(text) if re.match(r"\d", text) else {"true": True, "false": False}.get(text, text)
 
 
 def test_the_tables_of_parameters_match_the_launch_arguments():
