@@ -113,7 +113,9 @@ def _invalid_integers(good, kind):
     for leaf in messages.leaves(good):
         field = _commented_field(leaf, kind)
         if leaf.kind in INTEGERS and field is not None:
-            yield _bad(good, leaf.path, INTEGERS[leaf.kind][1])
+            smallest, largest = INTEGERS[leaf.kind]
+            high = field.too_high()
+            yield _bad(good, leaf.path, largest if high is None or high <= largest else smallest)
 
 
 def _invalid_arrays(good, kind):

@@ -210,14 +210,14 @@ def test_the_speed_and_acceleration_of_a_goal_are_limited(robot, action, name, f
     assert not goal.accepted and field in message and message.endswith(f" {unit}"), message
 
 
-@pytest.mark.parametrize("action, name, fields", [
-    (ServoJ, "servo_j", {"joint_positions": HOME}),
-    (ServoL, "servo_l", {"pose": FORWARD}),
-    (ServoC, "servo_c", {"pose": FORWARD}),
-    (Decelerate, "servo_stop", {})])
-def test_the_deceleration_of_servo_motion_is_that_of_the_tcp(robot, action, name, fields):
+@pytest.mark.parametrize("action, name, fields, unit", [
+    (ServoJ, "servo_j", {"joint_positions": HOME}, "rad/s^2"),
+    (ServoL, "servo_l", {"pose": FORWARD}, "m/s^2"),
+    (ServoC, "servo_c", {"pose": FORWARD}, "m/s^2"),
+    (Decelerate, "servo_stop", {}, "rad/s^2 or m/s^2")])
+def test_the_deceleration_of_a_servo_motion_is_that_of_its_setpoints(robot, action, name, fields, unit):
     message = robot.rejection(robot.send(action, name, **fields, deceleration=41.0)).message
-    assert "deceleration" in message and message.endswith(" m/s^2"), message
+    assert message.startswith("deceleration is 41") and message.endswith(f"to 40 {unit}"), message
 
 
 def test_speed_j_moves_for_the_given_time(robot):
