@@ -10,7 +10,7 @@ from programs import Process, find_program
 from support import HOME, wait_for
 from ur_ros_rtde_tutorials.action import MoveDownUntilForce
 
-from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce
+from ur_ros_rtde_msgs.action import MoveJ, MoveUntilForce, ZeroFtSensor
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 THRESHOLD = 20.0  # N
@@ -21,6 +21,7 @@ CYCLE = 0.002  # s of the controller
 @pytest.fixture
 def above_a_surface(robot, simulator):
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded(30.0)
+    robot.send(ZeroFtSensor, "zero_ft_sensor").succeeded()  # a program that began in contact has zeroed it there
     simulator.control("place_surface", z=simulator.state()["actual_tcp_pose"][2] - 0.1, **SURFACE)
 
 

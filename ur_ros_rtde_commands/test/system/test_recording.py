@@ -77,7 +77,7 @@ def test_records_several_files_in_sequence(receiver, simulator, client, tmp_path
 def test_numbers_have_full_round_trip_precision(receiver, simulator, client, tmp_path):
     file = tmp_path / "numbers.csv"
     start_when_connected(client, file, ["output_double_register_24", "output_int_register_24", "actual_digital_input_bits"])
-    value = 0.1 + 0.2  # 0.30000000000000004
+    value = struct.unpack("f", struct.pack("f", 0.1 + 0.2))[0]  # registers have 32 bits: 0.30000001192092896
     simulator.control("run_script", script="sec set():\n  write_output_float_register(24, 0.1 + 0.2)\n"
                                            "  write_output_integer_register(24, -123456789)\nend\n")
     wait_for(lambda: count_lines(file) > 1 and "-123456789" in file.read_text(), 10.0, "the registers")
