@@ -64,7 +64,7 @@ def test_a_gripper_without_power_ends_the_program(gripper, simulator, action, na
     result = gripper.send(action, name, **fields).result()
     simulator.control("gripper", powered=True)
     assert was_halted(result), result.message
-    assert "Communication problem with a Soft Gripper" in simulator.state()["popup"]
+    assert any("Communication problem with a Soft Gripper" in entry["text"] for entry in simulator.control("log")["entries"])
     make_ready(gripper, 10.0)
     gripper.send(action, name, **fields).succeeded()
 

@@ -68,7 +68,7 @@ TEST_F(SoftGripperTest, HaltsTheProgramWithAPopupForAWidthOutOfRange)
 {
   run_script(" sg_grip(200, False)");
   ASSERT_TRUE(wait_for_program_end());
-  EXPECT_EQ(controller.state()["popup"], "The Soft Gripper Grip command returned with error.");
+  EXPECT_TRUE(log_contains(controller, "The Soft Gripper Grip command returned with error."));
   EXPECT_EQ(width(), 40.0);
 }
 

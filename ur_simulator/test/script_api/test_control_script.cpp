@@ -250,6 +250,7 @@ TEST_F(ContactDuringMotionTest, EndsAStream)
   fixture.cycles(200);
   EXPECT_LT(fixture.state.target_tcp_speed.norm(), 1e-9) << "another command does not revive the stream";
 
+  parameters(Vector6::Constant(2.0));  // its deceleration
   command(speed_stop);
   parameters(-down, {0.5, 0.0});
   fixture.state.inputs.integers[0] = speed_l;
