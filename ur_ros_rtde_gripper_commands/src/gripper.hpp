@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <string>
 #include <ur_ros_rtde/check.hpp>
@@ -37,17 +35,8 @@ void check_motion(ur_ros_rtde::Check & check, const Goal & goal)
 template <typename Run>
 ur_ros_rtde::Outcome trigger_and_read_width(Run & run, double timeout)
 {
-  using ur_ros_rtde::ErrorCode;
   if (auto outcome = run.trigger(timeout); !outcome) {
-    // The program may have ended, and be started again.
-    const bool may_be_halted =
-        outcome.code() == ErrorCode::program_stopped || outcome.code() == ErrorCode::link_lost;
-    return may_be_halted ? ur_ros_rtde::Outcome::failure(
-                               outcome.code(),
-                               fmt::format("{}; a popup of the OnRobot URCap may tell why (power, cable, a "
-                                           "width that the fingers do not have)",
-                                           outcome.message()))
-                         : outcome;
+    return outcome;
   }
   run.result().width = run.registers().get_double(19) / millimeters_per_meter;
   return ur_ros_rtde::Outcome::success();
