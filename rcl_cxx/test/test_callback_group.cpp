@@ -25,6 +25,21 @@ class CallbackGroupTest : public Actions {
     serve(options);
   }
 
+  /// Its callback runs until ends_ is set.
+  auto send_one_that_blocks(int order)
+  {
+    std::promise<void> begins;
+    on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) {
+      begins.set_value();
+      ends_.get_future().wait();
+      return rcl_cxx::GoalResponse{};
+    };
+    auto response = client->async_send_goal(goal_of(order), {});
+    EXPECT_EQ(begins.get_future().wait_for(kLimit), std::future_status::ready);
+    return response;
+  }
+
+  std::promise<void> ends_;
   rcl_cxx::CallbackGroup::SharedPtr group = node->create_callback_group();
   rcl_cxx::Executor second{context};
   std::thread thread{[this] {
@@ -66,20 +81,12 @@ TEST_F(CallbackGroupTest, MessagesDoNotWaitForTheCallbackOfAGoalRequest)
       group);
   const auto publisher =
       node->create_publisher<test_msgs::msg::Empty>("messages", rcl_cxx::QoS::services_default());
-  std::promise<void> blocks;
-  std::promise<void> ends;
-  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) {
-    blocks.set_value();
-    ends.get_future().wait();
-    return rcl_cxx::GoalResponse{};
-  };
-  auto response = client->async_send_goal(goal_of(1), {});
-  ASSERT_EQ(blocks.get_future().wait_for(kLimit), std::future_status::ready);
+  auto response = send_one_that_blocks(1);
   EXPECT_TRUE(eventually([&] {
     publisher->publish(test_msgs::msg::Empty());
     return received > 0;
   }));
-  ends.set_value();
+  ends_.set_value();
   EXPECT_TRUE(get(std::move(response)));
 }
 
@@ -93,18 +100,10 @@ TEST_F(CallbackGroupTest, CancelRequestsDoNotWaitForTheCallbackOfAGoalRequest)
   };
   const auto goal = send(1);
   const auto handle = accepted(0);
-  std::promise<void> blocks;
-  std::promise<void> ends;
-  on_goal = [&](const rcl_cxx::GoalUUID &, const Fibonacci::Goal &) {
-    blocks.set_value();
-    ends.get_future().wait();
-    return rcl_cxx::GoalResponse{};
-  };
-  auto response = client->async_send_goal(goal_of(2), {});
-  ASSERT_EQ(blocks.get_future().wait_for(kLimit), std::future_status::ready);
+  auto response = send_one_that_blocks(2);
   auto cancel = goal->async_cancel();
   EXPECT_TRUE(eventually([&] { return canceled && handle->is_canceling(); }));
-  ends.set_value();
+  ends_.set_value();
   EXPECT_EQ(get(std::move(cancel)).code, CancelCode::none);
   EXPECT_TRUE(handle->canceled(result_of({1})));
   EXPECT_TRUE(get(std::move(response)));

@@ -9,6 +9,7 @@
 namespace ur_ros_rtde_gripper_commands {
 
 constexpr int max_register = 255;
+
 /// The status registers (Robotiq, "2F-85 & 2F-140 Instruction Manual", register mapping).
 struct RobotiqState {
   int status = 0;    ///< STA: 0 reset, 1 activation in progress, 3 active

@@ -85,7 +85,7 @@ Expected<StopReport> MotionStopper::execute_once(const StopOptions & options)
 Expected<StopReport> MotionStopper::stop_without_rtde() const
 {
   activities_.fence_script();
-  // Its answer is the only report. Without RTDE data, the watchdog ends the program meanwhile.
+  // Its answer is the only report. Without RTDE data, the watchdog ends the program too.
   constexpr std::chrono::seconds answer_timeout(3);
   const Status stopped = stop_program(options_.address, answer_timeout);
   const std::string link = state_.link().error.message;
