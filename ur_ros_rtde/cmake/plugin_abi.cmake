@@ -1,11 +1,12 @@
 # ur_ros_rtde_plugin_abi(<variable> <folder>...)
 #
-# Sets <variable> to a hash of the headers in the folders, without comments and white space. A plugin that was built with
-# other headers than the driver is not loaded.
+# Sets <variable> to a hash of the headers and of the definitions of messages and actions in the folders, without comments
+# and white space. A plugin that was built with others than the driver is not loaded.
 function(ur_ros_rtde_plugin_abi variable)
   set(code "")
   foreach(folder IN LISTS ARGN)
-    file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${folder}/*.hpp")
+    file(GLOB_RECURSE headers CONFIGURE_DEPENDS
+      "${folder}/*.h" "${folder}/*.hpp" "${folder}/*.msg" "${folder}/*.action")
     if(NOT headers)
       message(FATAL_ERROR "ur_ros_rtde_plugin_abi: there are no headers in ${folder}")
     endif()
@@ -13,7 +14,11 @@ function(ur_ros_rtde_plugin_abi variable)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${headers})
     foreach(header IN LISTS headers)
       file(READ "${header}" text)
-      string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+      set(comment "//")
+      if(header MATCHES "\\.(msg|action)$")
+        set(comment "#")
+      endif()
+      string(REGEX REPLACE "${comment}[^\n]*" "" text "${text}")
       string(REGEX REPLACE "[ \t\r\n]+" " " text "${text}")
       file(RELATIVE_PATH name "${folder}" "${header}")
       string(APPEND code "${name}: ${text}")

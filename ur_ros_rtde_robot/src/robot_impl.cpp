@@ -176,13 +176,14 @@ Error Robot::Impl::program_ended_error() const
             "most {:.0f} ms are allowed (watchdog_frequency); {}",
             1e3 * gap, 1e3 / frequency, then)};
   }
-  const char * by = frequency > 0.0 ? "on the pendant, by another client, by an error (see the pendant's "
-                                      "log), or by its watchdog if the connection to it is interrupted"
-                                    : "on the pendant, by another client, or by an error (see the pendant's "
-                                      "log)";
-  return {ErrorCode::program_stopped,
-          fmt::format("the control program was stopped {} (runtime state {}); {}", by,
-                      to_string(state.latest().value_or(Sample{}).runtime_state), then)};
+  std::string by = frequency > 0.0
+                       ? "on the pendant, by another client, by an error (see the pendant's log), or "
+                         "by its watchdog if the connection to it is interrupted"
+                       : "on the pendant, by another client, or by an error (see the pendant's log)";
+  if (const Sample now = state.latest().value_or(Sample{}); !now.is_program_running()) {  // not the next one
+    by += fmt::format(" (runtime state {})", to_string(now.runtime_state));
+  }
+  return {ErrorCode::program_stopped, fmt::format("the control program was stopped {}; {}", by, then)};
 }
 
 Status Robot::Impl::motion_possible() const

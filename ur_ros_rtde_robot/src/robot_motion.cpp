@@ -122,10 +122,13 @@ Status Robot::is_valid(const Generation & generation) const
   if (possible) {
     return current;
   }
-  // It names the cause better than the change of the generation that follows from it. But a program ends
-  // because its connection was lost, even if the new one has shown it running for some cycles.
-  const bool follows = possible.error().code == ErrorCode::program_stopped && !current &&
-                       current.error().code == ErrorCode::link_lost;
+  // It names the cause better than the change of the generation that follows from it, but for two that follow
+  // themselves: a program ends because its connection was lost, even if the new one has shown it running for
+  // some cycles, and the connection is replaced because the program has ended.
+  const ErrorCode code = possible.error().code;
+  const bool follows =
+      !current && (code == ErrorCode::link_lost ||
+                   (code == ErrorCode::program_stopped && current.error().code == ErrorCode::link_lost));
   return follows ? current : possible;
 }
 

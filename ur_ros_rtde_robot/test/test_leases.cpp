@@ -24,6 +24,20 @@ TEST_F(LeaseTest, EndsWithItsProgramEvenIfTheNextOneRunsAlready)
   EXPECT_TRUE(stays_at_rest());
 }
 
+/// Not the connection, which is replaced because of it.
+TEST_F(LeaseTest, NamesTheEndOfItsProgramWhileTheNextOneStarts)
+{
+  const Lease lease = acquire();
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(eventually([&] { return !robot->ready_to_move(); }));
+  ASSERT_TRUE(eventually([&] {
+    const Status valid = robot->is_valid(lease);
+    const Error cause = valid ? Error{} : valid.error();
+    EXPECT_EQ(cause.code, ErrorCode::program_stopped) << cause.message;
+    return HasFailure() || robot->ready_to_move();
+  }));
+}
+
 TEST_F(LeaseTest, EndsWithItsConnection)
 {
   const Lease lease = acquire();

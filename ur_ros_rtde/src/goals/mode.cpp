@@ -9,19 +9,17 @@
 namespace ur_ros_rtde {
 namespace {
 using Control = ur_rtde::RTDEControlInterface;
-constexpr std::uint32_t all_modes = Control::MOTION_FORCE | Control::MOTION_FREEDRIVE | Control::MOTION_TEACH;
 
-/// Throws RobotError (busy) if one of ur_rtde's `modes` (Control::MOTION_…) is active, which excludes
-/// `requested_mode`.
-void check_modes_inactive(Run & run, std::uint32_t modes, const std::string & requested_mode)
+/// Throws RobotError (busy) if one of `modes` is active, which excludes `requested_mode`.
+void check_modes_inactive(const Run & run, Activities modes, const std::string & requested_mode)
 {
-  const std::uint32_t active = run.control()->getStartedMotions() & modes;
-  if (active == 0) {
+  const Activities active = run.robot().activities() & modes;
+  if (active.empty()) {
     return;
   }
-  const char * mode = (active & Control::MOTION_FREEDRIVE) != 0 ? "freedrive (end it: freedrive_stop)"
-                      : (active & Control::MOTION_TEACH) != 0   ? "teach mode (end it: end_teach_mode)"
-                                                                : "force mode (end it: force_mode_stop)";
+  const char * mode = active.contains(Activity::freedrive)    ? "freedrive (end it: freedrive_stop)"
+                      : active.contains(Activity::teach_mode) ? "teach mode (end it: end_teach_mode)"
+                                                              : "force mode (end it: force_mode_stop)";
   throw RobotError({ErrorCode::busy, fmt::format("no {} while the arm is in {}", requested_mode, mode)});
 }
 
@@ -34,7 +32,7 @@ std::vector<int> to_int_flags(const std::array<bool, 6> & flags)
 Mode::~Mode()
 {
   try {
-    if (on_ && (run_.control()->getStartedMotions() & ~(all_modes | Control::MOTION_CONTACT)) == 0) {
+    if (on_ && run_.robot().activities().without(outlasting_modes | Activity::contact_detection).empty()) {
       end();
     }
   } catch (const std::exception & error) {
@@ -53,7 +51,7 @@ void Mode::end()
 
 Mode start_force_mode(Run & run, const ForceModeOptions & options)
 {
-  check_modes_inactive(run, Control::MOTION_FREEDRIVE | Control::MOTION_TEACH, "force mode");
+  check_modes_inactive(run, hand_guiding, "force mode");
   check_result(run.control()->forceModeSetDamping(options.damping), "set the damping of force mode");
   check_result(run.control()->forceModeSetGainScaling(options.gain_scaling), "set the gain of force mode");
   check_result(run.control()->forceMode(options.task_frame, to_int_flags(options.compliant),
@@ -66,14 +64,14 @@ Mode start_force_mode(Run & run, const ForceModeOptions & options)
 
 Mode start_freedrive(Run & run, const std::array<bool, 6> & free_axes, const std::vector<double> & feature)
 {
-  check_modes_inactive(run, all_modes, "freedrive");
+  check_modes_inactive(run, outlasting_modes, "freedrive");
   check_result(run.control()->freedriveMode(to_int_flags(free_axes), feature), "enter freedrive");
   return {run, &Control::endFreedriveMode, "freedrive"};
 }
 
 Mode start_teach_mode(Run & run)
 {
-  check_modes_inactive(run, all_modes, "teach mode");
+  check_modes_inactive(run, outlasting_modes, "teach mode");
   check_result(run.control()->teachMode(), "enter teach mode");
   return {run, &Control::endTeachMode, "teach mode"};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <list>
 #include <memory>
@@ -33,6 +34,9 @@ class StartedActivities {
   /// A script that runs, or is about to run, in place of the control program.
   class Script {
    public:
+    /// In which a controller that has received a script begins to execute it.
+    static constexpr std::chrono::milliseconds begin_limit{3000};
+
     /// `fence` makes it impossible to send the script: what has not been sent is not executed. Must not wait.
     Script(StartedActivities & activities, std::function<void()> fence);
     ~Script();

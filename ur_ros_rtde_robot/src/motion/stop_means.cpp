@@ -28,8 +28,6 @@ constexpr double stop_cycles = 5;
 constexpr double mode_end_timeout = 0.5;
 /// From the acknowledgement of a stop to the sample that shows its beginning.
 constexpr double begin_timeout = 0.04;
-/// s of the controller, until a script that was sent begins: the limit of ScriptMonitor.
-constexpr double compile_timeout = 3.0;
 /// The samples reflect commands with a delay of some cycles.
 constexpr std::uint64_t sample_delay = 5;
 
@@ -272,13 +270,14 @@ Status MotionStopper::stop_script(const MotionTracker::View & before)
 {
   const auto has_script = [this] { return activities_.now().contains(Activity::script); };
   const bool begun = activities_.script_compiled();
+  const double limit = std::chrono::duration<double>(StartedActivities::Script::begin_limit).count();
   const auto begins = [&](const Sample &) {
     const auto view = tracker_.view();
     return view.program_running || view.program != before.program || activities_.script_compiled() ||
            !has_script();
   };
   Status stopped = request_program_stop(true);
-  if (stopped && !begun && has_script() && wait_for(compile_timeout, begins) && has_script()) {
+  if (stopped && !begun && has_script() && wait_for(limit, begins) && has_script()) {
     stopped = request_program_stop(true);
   }
   if (!stopped) {

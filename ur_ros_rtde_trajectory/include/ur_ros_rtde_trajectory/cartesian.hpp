@@ -26,7 +26,8 @@ using IkFunction = std::function<Expected<Joints>(const Pose & pose, const Joint
 /// `ik` is queried at up to 100 poses, including the last one. Where `arm` deviates from it, as nominal
 /// kinematics do from a calibrated arm, the deviation is a correction that is interpolated along the path.
 ///
-/// Returns ErrorCode::unreachable, with the pose and the reason, if a pose is out of reach, a joint limit is
+/// Returns ErrorCode::invalid_goal, with the field, for numbers that are not finite or out of range, and
+/// ErrorCode::unreachable, with the pose and the reason, if a pose is out of reach, a joint limit is
 /// exceeded or the arm comes near a singularity (smallest singular value of the Jacobian below 0.01,
 /// rotations scaled by 0.2 m).
 Expected<trajectory::Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm & arm,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
 #include "kinematics/cartesian_sampler.hpp"
 #include "kinematics/displacement_norm.hpp"
@@ -16,6 +18,29 @@ using trajectory::Trajectory;
 constexpr std::size_t max_ik_queries = 100;
 constexpr double same_correction = 1e-5;   // m
 constexpr double max_model_error = 0.015;  // m; a larger deviation means another arm
+
+Status check_range(std::string_view field, double value, bool may_be_zero)
+{
+  const bool valid = std::isfinite(value) && (may_be_zero ? value >= 0.0 : value > 0.0);
+  return valid ? Status()
+               : failure(ErrorCode::invalid_goal,
+                         fmt::format("{} is {:.6g}: it must be a finite number {} 0", field, value,
+                                     may_be_zero ? "of at least" : "above"));
+}
+
+Status check_positions(const std::vector<Pose> & poses, const Joints & start)
+{
+  if (poses.empty()) {
+    return failure(ErrorCode::invalid_goal, "poses is empty: the first is where the arm is");
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i].matrix().allFinite()) {
+      return failure(ErrorCode::invalid_goal, fmt::format("poses[{}] has numbers that are not finite", i));
+    }
+  }
+  return start.allFinite() ? Status()
+                           : failure(ErrorCode::invalid_goal, "start has numbers that are not finite");
+}
 
 /// Joint positions at path parameter u of segments that were sampled with the correction of the start only.
 Joints joints_at(const std::vector<SampledSegment> & segments, double u)
@@ -73,6 +98,13 @@ Expected<Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm &
                                     const trajectory::Limits & limits, const CartesianOptions & options,
                                     const IkFunction & ik, const std::stop_token & stop)
 {
+  for (const Status & status : {check_positions(poses, start), check_range("speed", options.speed, false),
+                                check_range("rotation_speed", options.rotation_speed, false),
+                                check_range("blend_radius", options.blend_radius, true)}) {
+    if (!status) {
+      return tl::unexpected(status.error());
+    }
+  }
   const TcpPath path(poses, options.blend_radius);
   const CartesianSampler sampler(path, arm, limits, options);
   const Twist start_correction = difference(poses.front(), arm.forward(start));

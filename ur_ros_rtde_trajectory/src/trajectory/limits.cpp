@@ -71,7 +71,8 @@ Status check(const Limits & limits)
 Status check_positions(std::string_view field, const Joints & positions, const Limits & limits)
 {
   for (int j = 0; j < joint_count; ++j) {
-    if (positions[j] < limits.position_min[j] || positions[j] > limits.position_max[j]) {
+    const bool within = positions[j] >= limits.position_min[j] && positions[j] <= limits.position_max[j];
+    if (!within) {  // or not a number
       return failure(
           ErrorCode::invalid_goal,
           fmt::format("{} of {} is {:.6g} rad, outside its limits {:.6g} to {:.6g} rad", field, joint_name(j),

@@ -1,6 +1,9 @@
 #include "ur_ros_rtde_trajectory/sampled.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "path/spline.hpp"
 #include "timing/time_parameterization.hpp"
@@ -9,6 +12,45 @@ namespace ur_ros_rtde::trajectory {
 namespace {
 
 constexpr double same_sample = 1e-9;  // rad; closer samples are merged
+
+Status check(const SampledSegment & segment, std::size_t number)
+{
+  const std::size_t count = segment.positions.size();
+  if (count == 0 || segment.parameters.size() != count || segment.min_durations.size() != count - 1) {
+    return failure(
+        ErrorCode::invalid_goal,
+        fmt::format("segment {} has {} positions, {} parameters and {} durations: give at least one "
+                    "position, a parameter for each, and a duration for each interval",
+                    number, count, segment.parameters.size(), segment.min_durations.size()));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool follows = i == 0 || segment.parameters[i] > segment.parameters[i - 1];
+    const bool has_duration =
+        i == 0 || (segment.min_durations[i - 1] >= 0.0 && std::isfinite(segment.min_durations[i - 1]));
+    if (!segment.positions[i].allFinite() || !std::isfinite(segment.parameters[i]) || !follows ||
+        !has_duration) {
+      return failure(
+          ErrorCode::invalid_goal,
+          fmt::format("sample {} of segment {} is invalid: give finite positions, increasing finite "
+                      "parameters, and durations of 0 s or more",
+                      i, number));
+    }
+  }
+  return {};
+}
+
+Status check(const std::vector<SampledSegment> & segments)
+{
+  if (segments.empty()) {
+    return failure(ErrorCode::invalid_goal, "there is no segment: give at least one");
+  }
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (Status valid = check(segments[i], i); !valid) {
+      return valid;
+    }
+  }
+  return {};
+}
 
 // Knots of a segment, without repeated samples.
 struct SampledKnots {
@@ -83,8 +125,10 @@ Expected<Trajectory> plan_sampled(const std::vector<SampledSegment> & segments,
                                   const std::vector<double> & waypoints, const Limits & limits,
                                   const std::stop_token & stop)
 {
-  if (auto status = check(limits); !status) {
-    return tl::unexpected(status.error());
+  for (const Status & status : {check(limits), check(segments)}) {
+    if (!status) {
+      return tl::unexpected(status.error());
+    }
   }
   auto path = std::make_shared<Path>();
   for (const SampledSegment & segment : segments) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "home.hpp"
 #include "kinematics/tcp_path.hpp"
@@ -191,6 +193,28 @@ TEST(CartesianPlanTest, ReachesThePosesOfCalibratedArm)
   for (double t = 0.0; t < plan->time_of_waypoint(1); t += 0.01) {
     EXPECT_LT(distance_to_line(real.forward(plan->sample(t).position), poses[0], poses[1]), 3e-4);
   }
+}
+
+TEST(CartesianPlanTest, RejectsNumbersThatAreNotFiniteOrOutOfRange)
+{
+  const Arm arm(ur10e);
+  const auto poses = poses_along(arm, {step(0.0, 0.1, 0.0)});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto rejects = [&](const std::vector<Pose> & path, const Joints & start,
+                           const CartesianOptions & options, const std::string & field) {
+    const auto plan = plan_cartesian(path, arm, start, limits(), options, ik_of(arm));
+    ASSERT_FALSE(plan) << field;
+    EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+    EXPECT_EQ(plan.error().message.find(field), 0U) << plan.error().message;
+  };
+  auto not_finite = poses;
+  not_finite[1].translation().y() = nan;
+  rejects({}, home(), {}, "poses is empty");
+  rejects(not_finite, home(), {}, "poses[1]");
+  rejects(poses, Joints::Constant(nan), {}, "start");
+  rejects(poses, home(), {.speed = 0.0}, "speed is 0");
+  rejects(poses, home(), {.rotation_speed = nan}, "rotation_speed is nan");
+  rejects(poses, home(), {.blend_radius = -0.01}, "blend_radius is -0.01");
 }
 
 struct Obstruction {

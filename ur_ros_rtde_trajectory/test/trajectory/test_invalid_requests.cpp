@@ -7,6 +7,7 @@
 
 #include "checks.hpp"
 #include "ur_ros_rtde_trajectory/plan.hpp"
+#include "ur_ros_rtde_trajectory/sampled.hpp"
 
 namespace ur_ros_rtde::trajectory::test {
 namespace {
@@ -89,6 +90,55 @@ INSTANTIATE_TEST_SUITE_P(
                        "speed_fraction is 0"},
         InvalidRequest{"SpeedAboveOne", [](Request & r) { r.options.speed_fraction = 1.5; },
                        "speed_fraction is 1.5"}),
+    [](const auto & bad) { return bad.param.name; });
+
+TEST(InvalidJointsTest, AreRejected)
+{
+  const std::vector<Joints> waypoints{Joints::Zero(), Joints::Constant(not_a_number)};
+  const auto plan = plan_path(waypoints, Request().limits);
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().message.find("waypoint 1: position of shoulder_pan_joint is nan"), std::string::npos)
+      << plan.error().message;
+}
+
+struct InvalidSegment {
+  const char * name;
+  void (*modify)(std::vector<SampledSegment> &);
+  const char * message_part;
+};
+
+class InvalidSegmentTest : public testing::TestWithParam<InvalidSegment> {};
+
+TEST_P(InvalidSegmentTest, IsRejectedWithItsNumber)
+{
+  std::vector<SampledSegment> segments{
+      {{0.0, 0.5, 1.0}, {Joints::Zero(), Joints::Constant(0.1), Joints::Constant(0.2)}, {0.1, 0.1}}};
+  ASSERT_TRUE(plan_sampled(segments, {1.0}, Request().limits));
+  GetParam().modify(segments);
+  const auto plan = plan_sampled(segments, {1.0}, Request().limits);
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::invalid_goal);
+  EXPECT_NE(plan.error().message.find(GetParam().message_part), std::string::npos) << plan.error().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, InvalidSegmentTest,
+    testing::Values(
+        InvalidSegment{"NoSegment", [](auto & segments) { segments.clear(); }, "there is no segment"},
+        InvalidSegment{"NoPosition", [](auto & segments) { segments.push_back({}); },
+                       "segment 1 has 0 positions, 0 parameters and 0 durations"},
+        InvalidSegment{"TooFewParameters", [](auto & segments) { segments[0].parameters.pop_back(); },
+                       "segment 0 has 3 positions, 2 parameters and 2 durations"},
+        InvalidSegment{"TooManyDurations", [](auto & segments) { segments[0].min_durations.push_back(1.0); },
+                       "3 durations"},
+        InvalidSegment{"PositionNan", [](auto & segments) { segments[0].positions[1][3] = not_a_number; },
+                       "sample 1 of segment 0"},
+        InvalidSegment{"ParameterRepeated", [](auto & segments) { segments[0].parameters[2] = 0.5; },
+                       "sample 2 of segment 0"},
+        InvalidSegment{"DurationNegative", [](auto & segments) { segments[0].min_durations[0] = -0.1; },
+                       "sample 1 of segment 0"},
+        InvalidSegment{"DurationInfinite", [](auto & segments) { segments[0].min_durations[1] = INFINITY; },
+                       "sample 2 of segment 0"}),
     [](const auto & bad) { return bad.param.name; });
 
 // Any input results in a verified trajectory or an error; never in a crash, a hang or an invalid plan.

@@ -9,6 +9,7 @@
 
 #include "connection/skew.hpp"
 #include "motion/motion_blocker.hpp"
+#include "motion/started_activities.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -17,7 +18,6 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t max_lines = 1000;
 constexpr milliseconds send_timeout(1000);
-constexpr milliseconds script_begin_timeout(3000);  // from sending to the begin marker
 constexpr milliseconds message_wait(4);
 constexpr std::string_view control_program = "rtde_control";  ///< its name, given by ur_rtde
 
@@ -358,7 +358,7 @@ bool ScriptMonitor::complete_if_late()
     return complete(ScriptEnd::timeout, ErrorCode::timeout,
                     fmt::format("the script had not ended after {:.1f} s", seconds(elapsed)));
   }
-  if (!begin_seen_ && elapsed > script_begin_timeout) {
+  if (!begin_seen_ && elapsed > StartedActivities::Script::begin_limit) {
     return complete(
         ScriptEnd::timeout, ErrorCode::timeout,
         fmt::format("the controller has not begun the script after {:.1f} s: is the robot in remote control?",
