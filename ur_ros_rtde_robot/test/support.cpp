@@ -27,6 +27,18 @@ std::string own_address()
          std::to_string(2 + hash / 50000 % 250);
 }
 
+std::uint16_t free_port()
+{
+  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof(address));
+  socklen_t size = sizeof(address);
+  ::getsockname(descriptor, reinterpret_cast<sockaddr *>(&address), &size);
+  ::close(descriptor);
+  return ntohs(address.sin_port);
+}
+
 bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds timeout)
 {
   const auto deadline = std::chrono::steady_clock::now() + timeout;

@@ -23,6 +23,9 @@ using namespace std::chrono_literals;
 /// An address in 127.0.0.0/8 that is unique to the running test, so that tests can run in parallel.
 std::string own_address();
 
+/// A port on which no process listens.
+std::uint16_t free_port();
+
 /// Waits for a condition; false if it does not hold within `timeout`.
 bool eventually(const std::function<bool()> & condition, std::chrono::milliseconds timeout = 15s);
 
