@@ -49,9 +49,9 @@ def destroy_subscriptions_after_test(request):
 
 @pytest.fixture(scope="module")
 def driver(simulator, request):
-    """A driver with the plugins that the test module sets: PLUGINS = FEW_PLUGINS."""
+    """A driver with the plugins that the test module sets: PLUGINS = FEW_PLUGINS. The module may set further DRIVER_PARAMETERS."""
     chosen = [request.module.PLUGINS] if hasattr(request.module, "PLUGINS") else []
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", *chosen)
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", *chosen, *getattr(request.module, "DRIVER_PARAMETERS", ()))
     yield driver
     driver.stop()
     print(driver.output())

@@ -4,9 +4,10 @@ import pytest
 from arm_state import get_joint_state, get_tcp_pose, home_plus
 from geometry_msgs.msg import PoseStamped
 from programs import start_node
+from publisher import Publisher
 from sensor_msgs.msg import JointState
+from streams import joint_message
 from support import FEW_PLUGINS, wait_for
-from test_streams import Publisher, joint_message
 from trajectories import TargetRecorder
 
 
