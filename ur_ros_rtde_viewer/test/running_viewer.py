@@ -6,6 +6,7 @@ import threading
 
 import numpy as np
 import pytest
+from arm_state import AT_REST
 from support import wait_for
 
 LIMIT = 90.0  # s, of an operation in the browser on a busy machine
@@ -150,3 +151,7 @@ class Tab:
 
 def until(condition, what, limit=LIMIT):
     return wait_for(condition, limit, what)
+
+
+def is_moving(simulator):
+    return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST

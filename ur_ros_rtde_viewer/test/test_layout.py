@@ -4,7 +4,7 @@ import contextlib
 import threading
 
 import pytest
-from running_viewer import LIMIT, RunningViewer, Tab, chromium, until
+from running_viewer import LIMIT, RunningViewer, Tab, until
 from ur_ros_rtde_viewer.panels.plots_panel import PLOTS
 
 BROWSER = True
@@ -29,12 +29,6 @@ def viewer():
     started = RunningViewer("--control")
     yield started
     started.close()
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
 
 
 @contextlib.contextmanager

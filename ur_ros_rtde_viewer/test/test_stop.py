@@ -4,10 +4,10 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from arm_state import AT_REST, home_plus
+from arm_state import home_plus
 from programs import start_node
 from robot_fixtures import make_ready
-from running_viewer import RunningViewer, until
+from running_viewer import RunningViewer, is_moving, until
 from ur_ros_rtde_viewer.control.control import Control
 from ur_ros_rtde_viewer.control.stop import ACCEPTANCE_TIMEOUT, SILENCE_TIMEOUT, Outcome
 
@@ -50,10 +50,6 @@ def time_until_fallback(text):
     begin = time.monotonic()
     until(lambda: any(phase in text() for phase in THROUGH_THE_DASHBOARD), "the fallback to dashboard_server")
     return time.monotonic() - begin
-
-
-def is_moving(simulator):
-    return max(map(abs, simulator.state()["actual"]["velocity"])) > AT_REST
 
 
 def test_without_a_driver_stop_names_the_remedy(running):
