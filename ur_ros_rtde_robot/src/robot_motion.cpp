@@ -127,7 +127,7 @@ Status Robot::is_valid(const Generation & generation) const
   // some cycles, and the connection is replaced because the program has ended.
   const ErrorCode code = possible.error().code;
   const bool follows =
-      !current && (code == ErrorCode::link_lost ||
+      !current && ((code == ErrorCode::link_lost && impl_->generation().ends != generation.ends) ||
                    (code == ErrorCode::program_stopped && current.error().code == ErrorCode::link_lost));
   return follows ? current : possible;
 }
