@@ -42,6 +42,12 @@ def test_completes(tmp_path, line, expected):
     assert set(completions(tmp_path, line)) == expected
 
 
+def test_completes_the_options_of_the_viewer(tmp_path):
+    pytest.importorskip("ur_ros_rtde_viewer")
+    assert set(completions(tmp_path, "ur view --rob")) == {"--robot"}
+    assert set(completions(tmp_path, "ur view --con")) == {"--control"}
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh"])
 def test_prints_the_code_for_the_shell(shell):
     command = [find_program("ur_ros_rtde_cli", "ur"), "completion", shell]

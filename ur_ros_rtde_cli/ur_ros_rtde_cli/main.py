@@ -91,13 +91,15 @@ def _parse_arguments(command: str, arguments: List[str]) -> argparse.Namespace:
 
 def _complete() -> None:
     """Answers a shell that completes a command line, and exits."""
-    from . import completion  # imported here, like argcomplete, because only shells need it
+    from . import completion, view  # imported here, like argcomplete, because only shells need them
     parser = argparse.ArgumentParser(prog="ur")
     parser.add_argument("--version", action=_ShowVersion, nargs=0)
     commands = parser.add_subparsers()
     for name in COMMANDS:
         command = commands.add_parser(name)
-        if name != VIEW:
+        if name == VIEW:
+            view.add_arguments(command)
+        else:
             _add_arguments(name, command)
     if _checkout_script() is not None:
         for name in CHECKOUT_COMMANDS:

@@ -1,5 +1,8 @@
 """Starts the viewer, which is a program of ur_ros_rtde_viewer."""
 
+import argparse
+import contextlib
+import importlib
 import os
 import pathlib
 from typing import List, Optional
@@ -12,6 +15,12 @@ def find_viewer() -> Optional[pathlib.Path]:
     prefixes = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
     candidates = (pathlib.Path(prefix, "lib", "ur_ros_rtde_viewer", "view") for prefix in prefixes)
     return next((candidate for candidate in candidates if candidate.is_file()), None)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of the viewer, if it is installed, for completion."""
+    with contextlib.suppress(ImportError):
+        importlib.import_module("ur_ros_rtde_viewer.arguments").add_arguments(parser)
 
 
 def execute(arguments: List[str]) -> None:
