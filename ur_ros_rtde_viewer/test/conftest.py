@@ -1,5 +1,6 @@
 import pathlib
 import sys
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -19,6 +20,14 @@ def server():
     started = start_server("127.0.0.1", 0)
     yield started
     stop_server(started)
+
+
+@pytest.fixture
+def control():
+    """A ControlNode without a thread."""
+    created = MagicMock()
+    created.post = lambda function: function()
+    return created
 
 
 @pytest.fixture(scope="module")

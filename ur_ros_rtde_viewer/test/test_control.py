@@ -8,18 +8,14 @@ from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
-import rclpy
 from ros_client import Client
 from running_viewer import RunningViewer, until
 from ur_ros_rtde_cli import interface_files
-from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms, form_panel
-from ur_ros_rtde_viewer.control import goals as goals_module
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
-from ur_ros_rtde_viewer.control.control_node import ControlNode
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
-from ur_ros_rtde_viewer.control.goals import END_TIMEOUT, Goals, Phase
+from ur_ros_rtde_viewer.control.goals import Phase
 from ur_ros_rtde_viewer.control.modes import Modes
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.control.target_panel import TargetPanel
@@ -119,117 +115,6 @@ def test_two_threads_that_change_the_action_leave_one_form(server, monkeypatch):
         thread.join()
     folders = [child.label for child in panel._container._children.values() if isinstance(child, GuiFolderHandle)]
     assert folders == ["Goals", panel._action.value] and panel._form.name == panel._action.value
-
-
-@pytest.fixture
-def control():
-    """A ControlNode without a thread."""
-    created = MagicMock()
-    created.post = lambda function: function()
-    return created
-
-
-@pytest.mark.parametrize("namespace", ["", "left", "cell/left"])
-def test_only_actions_of_the_driver_are_offered(control, namespace):
-    names = ["move_j", "dashboard/stop", "arm/move_j", "arm/dashboard/stop", "dashboard/arm/stop", "move_group/plan"]
-    prefix = f"/{namespace}/" if namespace else "/"
-    topics = [f"{action}/_action/feedback" for action in (*(prefix + name for name in names), "/other/move_j")]
-    control.node.get_topic_names_and_types.return_value = [(topic, ["p/action/A_FeedbackMessage"]) for topic in topics]
-    assert Goals(control, namespace).served() == {"move_j": "p/action/A", "dashboard/stop": "p/action/A"}
-
-
-def test_after_stop_a_goal_that_is_not_accepted_yet_is_canceled(control):
-    server, changes = MagicMock(), []
-    goals = Goals(control, "")
-    goals.client = lambda name, action: server
-    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), lambda sent: changes.append(sent.phase))
-    goals.cancel_unaccepted()
-    (on_response,), _ = server.send_goal_async.return_value.add_done_callback.call_args
-    response = MagicMock()
-    on_response(response)
-    response.result.return_value.cancel_goal_async.assert_called_once()
-    assert goal.phase == Phase.CANCELING and changes == [Phase.CANCELING]
-
-
-def test_a_tab_that_is_closed_after_the_node_changes_nothing():
-    context = rclpy.Context()
-    rclpy.init(context=context)
-    node = ControlNode(context)
-    node.start()
-    node.close()
-    node.post(lambda: pytest.fail("it was called"))
-    context.try_shutdown()
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    now = [1000.0]
-    monkeypatch.setattr(goals_module.time, "monotonic", lambda: now[0])
-    return now
-
-
-def serve(control, *identifiers):
-    control.node.get_publishers_info_by_topic.return_value = [SimpleNamespace(endpoint_gid=list(number)) for number in identifiers]
-
-
-def accepted_goal(goals, on_change):
-    """Returns a running goal, and the callback of its result."""
-    server, response = MagicMock(), MagicMock()
-    goals.client = lambda name, action: server
-    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), on_change)
-    server.send_goal_async.return_value.add_done_callback.call_args.args[0](response)
-    return goal, response.result().get_result_async().add_done_callback.call_args.args[0]
-
-
-@pytest.mark.parametrize("others", [[], [b"restarted"]])
-@pytest.mark.parametrize("canceled", [True, False])
-def test_a_goal_ends_with_its_driver(control, clock, others, canceled):
-    serve(control, b"driver")
-    goals, changes = Goals(control, ""), []
-    goal, on_result = accepted_goal(goals, lambda sent: changes.append((sent.phase, sent.message)))
-    if canceled:
-        goals.cancel(goal)
-    check = control.node.create_timer.call_args.args[1]
-    check()
-    serve(control, *others)
-    clock[0] += CHECK_PERIOD
-    check()
-    clock[0] += 0.9 * LOSS_TIME
-    check()
-    assert not goal.has_ended
-    clock[0] += 0.2 * LOSS_TIME
-    check()
-    assert goal.ended.is_set() and changes[-1] == (Phase.FAILED, loss(goal.action))
-    count = len(changes)
-    on_result(MagicMock())
-    check()
-    assert len(changes) == count and goal.phase == Phase.FAILED
-
-
-def test_a_driver_that_is_missing_for_a_moment_keeps_its_goals(control, clock):
-    goals = Goals(control, "")
-    serve(control, b"driver", b"another")
-    goal, _ = accepted_goal(goals, lambda sent: None)
-    check = control.node.create_timer.call_args.args[1]
-    for identifiers in ([], [b"driver"], [], [b"driver"]):
-        serve(control, *identifiers)
-        check()
-        clock[0] += 0.8 * LOSS_TIME
-    assert goal.phase == Phase.RUNNING
-
-
-def test_the_end_waits_for_all_goals_together(control, clock):
-    goals, waits = Goals(control, ""), []
-    for _ in range(3):
-        goal, _ = accepted_goal(goals, lambda sent: None)
-
-        def wait(timeout):
-            waits.append(timeout)
-            clock[0] += 0.6 * END_TIMEOUT
-
-        goal.ended.wait = wait
-    goals.end()
-    assert waits == pytest.approx([END_TIMEOUT, 0.4 * END_TIMEOUT, 0.0])
 
 
 @pytest.fixture
