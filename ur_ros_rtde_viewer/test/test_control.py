@@ -162,7 +162,7 @@ def test_a_mode_that_has_ended_is_not_ended_again(modes):
 def test_a_mode_that_starts_while_its_tab_is_closed_ends(server, outlives):
     robot = MagicMock(action_types={"freedrive_start": "ur_ros_rtde_msgs/action/Freedrive"}, current=lambda source: None)
     panel = FormPanel(server.gui, server.gui.add_folder("commands"), robot)
-    panel._send()
+    panel._send(0)
     panel.close()
     robot.modes.end.reset_mock()
     panel._on_end("freedrive_start", Freedrive.Goal(outlives_client=outlives), SimpleNamespace(phase=Phase.SUCCEEDED))
@@ -204,7 +204,7 @@ def test_the_plan_of_an_older_target_is_not_shown(target):
 def test_a_target_panel_that_is_closed_sends_nothing(target):
     panel, goals, posted = target
     panel._plan = MagicMock()
-    panel._in_loop(panel._send)
+    panel._in_loop(lambda: panel._send(0))
     panel.close()
     run(posted)
     assert not goals.send.called

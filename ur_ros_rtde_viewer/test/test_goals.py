@@ -1,5 +1,6 @@
 """Goals of the page, without ROS: what is offered, sent and canceled, and how goals end."""
 
+import threading
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -44,6 +45,21 @@ def test_a_tab_that_is_closed_after_the_node_changes_nothing():
     node.start()
     node.close()
     node.post(lambda: pytest.fail("it was called"))
+    context.try_shutdown()
+
+
+def test_posted_functions_are_called_in_their_order():
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node, called, ended = ControlNode(context), [], threading.Event()
+    for number in range(5):
+        node.post(lambda number=number: called.append(number))
+    node.post(lambda: 1 / 0)
+    node.post(lambda: called.append("after a failure"))
+    node.post(ended.set)
+    node.start()
+    assert ended.wait(20.0) and called == [0, 1, 2, 3, 4, "after a failure"]
+    node.close()
     context.try_shutdown()
 
 

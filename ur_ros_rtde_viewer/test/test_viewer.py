@@ -174,7 +174,7 @@ def test_a_mode_ends_with_the_tab_that_has_started_it(viewer, robot, server, cli
         tab._action.value = start
     if start == "force_mode_start":
         tabs[0]._inputs["compliant",].value = "false, false, true, false, false, false"
-    tabs[0]._send()
+    tabs[0]._send(control.goals.stop_count)
     update_until(viewer, lambda: robot.state.active_modes == (mode,), "the mode")
     tabs[1].close()
     for _ in range(30):

@@ -4,6 +4,7 @@ The thread does nothing else, so that STOP does not wait for the scene or the pl
 """
 
 import logging
+import queue
 import threading
 from typing import Any, Callable
 
@@ -25,6 +26,7 @@ class ControlNode:
         self._context = context
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
+        self._posted: "queue.SimpleQueue[Callable[[], Any]]" = queue.SimpleQueue()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="control", daemon=True)
 
@@ -41,10 +43,14 @@ class ControlNode:
                 logger.exception("a callback of a command failed")
 
     def post(self, function: Callable[[], Any]) -> None:
-        """Calls `function` in the thread of the node, unless it has ended. rclpy loses a response that arrives while another thread still
-        sends the request, so every request is sent in this thread."""
+        """Calls `function` in the thread of the node, unless it has ended, after those that were posted before. rclpy loses a response
+        that arrives while another thread still sends the request, so every request is sent in this thread."""
         if not self._ended.is_set():
-            self._executor.create_task(function)
+            self._posted.put(function)
+            self._executor.create_task(self._run_oldest)  # one task per function: the executor begins with the newest task
+
+    def _run_oldest(self) -> None:
+        self._posted.get()()
 
     def close(self) -> None:
         self._ended.set()

@@ -1,5 +1,6 @@
 """The form of an action in the page of one browser tab, and the goals that were sent with it."""
 
+import asyncio
 import threading
 from typing import Any, Callable, Dict, List, Optional
 
@@ -35,7 +36,7 @@ class FormPanel:
             self._error = gui.add_markdown("")
             self._goals_folder = gui.add_folder("Goals", visible=False)
         self._action.on_update(self._locked(self._show))
-        self._send_button.on_click(self._locked(self._send))
+        self._send_button.on_click(self._clicked)
         self._position_button.on_click(self._locked(self._use_current_position))
         self.update_actions()
 
@@ -47,6 +48,11 @@ class FormPanel:
                 function()
 
         return call
+
+    async def _clicked(self, event: Any) -> None:
+        """Runs in the event loop of viser, in the order of the messages: STOP after a click ends its goal, even if it is sent later."""
+        stop_count = self._robot.goals.stop_count
+        await asyncio.to_thread(self._locked(lambda: self._send(stop_count)), event)
 
     def update_actions(self) -> None:
         """Offers the actions that the driver serves. A form that is open stays open as long as its action is served."""
@@ -116,7 +122,7 @@ class FormPanel:
     def _show_error(self, text: str) -> None:
         self._error.content = escaped(text)
 
-    def _send(self) -> None:
+    def _send(self, stop_count: int) -> None:
         form, inputs = self._form, self._inputs
         if form is None or self._closed:
             return
@@ -131,7 +137,7 @@ class FormPanel:
             ended.remove()
         self._goals_folder.visible = True
         self._goals.append(GoalView(self._gui, self._goals_folder, self._robot.goals, form.name, form.action, goal,
-                                    lambda sent: self._on_end(form.name, goal, sent)))
+                                    stop_count, lambda sent: self._on_end(form.name, goal, sent)))
 
     def _on_end(self, name: str, goal: Any, sent: SentGoal) -> None:
         """Called in the thread of the node."""

@@ -14,9 +14,10 @@ WIDTH = 40  # characters
 
 
 class GoalView:
-    """Sends a goal and shows it in `container`. `on_end` is called in the thread of the control node."""
+    """Sends a goal and shows it in `container`. `stop_count`: that of `goals` when the user asked for the goal. `on_end` is called in the
+    thread of the control node."""
 
-    def __init__(self, gui: Any, container: Any, goals: Goals, name: str, action: Any, goal: Any,
+    def __init__(self, gui: Any, container: Any, goals: Goals, name: str, action: Any, goal: Any, stop_count: int,
                  on_end: Optional[Callable[[SentGoal], None]] = None):
         self._goals, self._on_end = goals, on_end
         self._shown_at = 0.0
@@ -26,7 +27,7 @@ class GoalView:
             self._progress = gui.add_progress_bar(0.0, visible=False)
             self._cancel = gui.add_button("Cancel", color="orange")
         self._cancel.on_click(lambda _event: self.cancel())
-        self._goal = goals.send(name, action, goal, self._on_change)
+        self._goal = goals.send(name, action, goal, self._on_change, stop_count)
 
     @property
     def has_ended(self) -> bool:

@@ -43,6 +43,7 @@ class SentGoal:
 
     action: str  # full name, "/move_j"
     on_change: Callable[["SentGoal"], None]
+    stop_count: int = 0  # that of Goals when the user asked for the goal
     phase: Phase = Phase.SENT
     message: str = ""  # of the result or the rejection
     feedback: Any = None
@@ -79,6 +80,7 @@ class Goals:
         self._clients: Dict[str, ActionClient] = {}
         self._reasons: Dict[bytes, str] = {}
         self._open: List[SentGoal] = []  # without a result
+        self.stop_count = 0  # how often STOP was pressed
         self._open_lock = threading.Lock()  # goals are sent by the threads of the page
         control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
@@ -102,9 +104,11 @@ class Goals:
             self._clients[name] = ActionClient(self._control.node, action, self.full_name(name))
         return self._clients[name]
 
-    def send(self, name: str, action: Any, goal: Any, on_change: Callable[[SentGoal], None]) -> SentGoal:
-        """Sends a goal. `on_change` is called in the thread of the node."""
-        sent = SentGoal(self.full_name(name), on_change)
+    def send(self, name: str, action: Any, goal: Any, on_change: Callable[[SentGoal], None],
+             stop_count: Optional[int] = None) -> SentGoal:
+        """Sends a goal, unless STOP was pressed since `stop_count` was read, by default now. A callback of the page reads it in the event
+        loop of viser, in which STOP runs as well. `on_change` is called in the thread of the node."""
+        sent = SentGoal(self.full_name(name), on_change, self.stop_count if stop_count is None else stop_count)
         with self._open_lock:
             self._open = [goal for goal in self._open if not goal.has_ended] + [sent]
         self._control.post(lambda: self._send_when_ready(name, action, goal, sent))
@@ -125,7 +129,9 @@ class Goals:
             sent.ended.wait(max(0.0, deadline - time.monotonic()))
 
     def cancel_unaccepted(self) -> None:
-        """Cancels the goals that wait for their server or its response: after STOP, none of them may start."""
+        """Cancels the goals that wait for their server or its response, or that are still on their way to send(): after STOP, none of
+        them may start."""
+        self.stop_count += 1
         self._control.post(lambda: [self._cancel(sent) for sent in self._open if sent.handle is None])
 
     def _send_when_ready(self, name: str, action: Any, goal: Any, sent: SentGoal) -> None:
@@ -139,6 +145,9 @@ class Goals:
                                    "ROS_DOMAIN_ID?")
 
     def _send(self, client: ActionClient, goal: Any, sent: SentGoal) -> None:
+        if sent.stop_count != self.stop_count:
+            sent.change(Phase.CANCELED, "not sent, because STOP was pressed")
+            return
         if sent.phase != Phase.SENT:  # canceled before it was sent
             sent.change(Phase.CANCELED, "canceled before the goal was sent")
             return

@@ -54,8 +54,8 @@ class RobotControl:
         self.twin.close()
 
     def stop(self, report: Report) -> None:
+        self.goals.cancel_unaccepted()  # first: goals of earlier clicks may be on their way
         self.jog.stop()
-        self.goals.cancel_unaccepted()
         self._stopper.press(report)
 
     @property

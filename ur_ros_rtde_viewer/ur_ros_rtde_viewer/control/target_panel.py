@@ -47,11 +47,16 @@ class TargetPanel:
         self._shown.on_update(lambda _event: self._in_loop(self._show_or_hide))
         self._motion.on_update(lambda _event: self._in_loop(self._solve))
         self._preview.on_update(lambda _event: self._in_loop(self._show_preview))
-        self._execute.on_click(lambda _event: self._in_loop(self._send))
+        self._execute.on_click(self._clicked)
 
     def _in_loop(self, function: Callable[[], None]) -> None:
         """Calls a function in the thread of the viewer's loop, unless the tab is gone, and with it all elements."""
         self._post(lambda: None if self._closed else function())
+
+    async def _clicked(self, _event: Any) -> None:
+        """Runs in the event loop of viser, in the order of the messages: STOP after a click ends its goal, even if it is sent later."""
+        stop_count = self._robot.goals.stop_count
+        self._in_loop(lambda: self._send(stop_count))
 
     def close(self) -> None:
         self._closed = True
@@ -167,7 +172,7 @@ class TargetPanel:
 
     # --- Execution -------------------------------------------------------------------------------------------------
 
-    def _send(self) -> None:
+    def _send(self, stop_count: int) -> None:
         plan, joints = self._plan, self._robot.joint_positions
         if plan is None or joints is None:
             return
@@ -183,7 +188,7 @@ class TargetPanel:
         self._execute.disabled = True
         self._goals_folder.visible = True
         self._goal = GoalView(self._client.gui, self._goals_folder, self._robot.goals, plan.name, plan.action,
-                              plan.goal(0.01 * within_limits(self._speed)), lambda _goal: self._in_loop(self._on_end))
+                              plan.goal(0.01 * within_limits(self._speed)), stop_count, lambda _goal: self._in_loop(self._on_end))
 
     def _on_end(self) -> None:
         self._forget_plan()
