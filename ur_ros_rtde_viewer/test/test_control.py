@@ -8,6 +8,7 @@ from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+from action_msgs.msg import GoalStatus
 from ros_client import Client
 from running_viewer import RunningViewer, until
 from ur_ros_rtde_cli import interface_files
@@ -15,7 +16,7 @@ from ur_ros_rtde_cli.fields import FieldError
 from ur_ros_rtde_viewer.control import action_forms, form_panel
 from ur_ros_rtde_viewer.control.action_forms import Kind, Source
 from ur_ros_rtde_viewer.control.form_panel import FormPanel
-from ur_ros_rtde_viewer.control.goals import Phase
+from ur_ros_rtde_viewer.control.goals import Goals, Phase
 from ur_ros_rtde_viewer.control.modes import Modes
 from ur_ros_rtde_viewer.control.recording_panel import RecordingPanel
 from ur_ros_rtde_viewer.control.target_panel import TargetPanel
@@ -168,6 +169,26 @@ def test_a_mode_that_starts_while_its_tab_is_closed_ends(server, outlives):
     panel._on_end("freedrive_start", Freedrive.Goal(outlives_client=outlives), SimpleNamespace(phase=Phase.SUCCEEDED))
     robot.modes.note.assert_called_once_with("freedrive_start", None if outlives else panel)
     robot.modes.end.assert_called_once_with(panel)
+
+
+def test_a_mode_ends_with_a_tab_whose_connection_was_lost_before_the_result(server, control):
+    actions = {name: MagicMock() for name in ("freedrive_start", "freedrive_stop")}
+    goals = Goals(control, "")
+    goals.client = lambda name, action: actions[name]
+    robot = MagicMock(action_types={"freedrive_start": "ur_ros_rtde_msgs/action/Freedrive"}, current=lambda source: None,
+                      goals=goals, modes=Modes(control, goals))
+    container = server.gui.add_folder("commands")
+    panel = FormPanel(server.gui, container, robot)
+    panel._send(0)
+    container.remove()  # viser removes the elements first
+    accepted = MagicMock()
+    with contextlib.suppress(RuntimeError):
+        actions["freedrive_start"].send_goal_async.return_value.add_done_callback.call_args.args[0](accepted)
+    on_result = accepted.result().get_result_async.return_value.add_done_callback.call_args.args[0]
+    with contextlib.suppress(RuntimeError):
+        on_result(MagicMock(result=lambda: SimpleNamespace(status=GoalStatus.STATUS_SUCCEEDED, result=SimpleNamespace(message=""))))
+    panel.close()
+    actions["freedrive_stop"].send_goal_async.assert_called_once()
 
 
 @pytest.fixture

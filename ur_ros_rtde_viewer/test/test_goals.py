@@ -132,3 +132,26 @@ def test_the_end_waits_for_all_goals_together(control, clock):
         goal.ended.wait = wait
     goals.end()
     assert waits == pytest.approx([END_TIMEOUT, 0.4 * END_TIMEOUT, 0.0])
+
+
+def fail(_sent):
+    raise RuntimeError("Cannot assign to 'content' on a removed GuiMarkdownHandle.")
+
+
+def test_a_cancel_is_sent_and_repeated_although_it_cannot_be_shown(control, caplog):
+    server, response, goals = MagicMock(), MagicMock(), Goals(control, "")
+    goals.client = lambda name, action: server
+    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), fail)
+    server.send_goal_async.return_value.add_done_callback.call_args.args[0](response)
+    goals.cancel(goal)
+    goals.cancel(goal)
+    assert goal.phase == Phase.CANCELING and response.result().cancel_goal_async.call_count == 2
+    assert "removed GuiMarkdownHandle" in caplog.text
+
+
+def test_stop_cancels_the_goals_after_one_that_cannot_be_shown(control):
+    goals = Goals(control, "")
+    goals.client = MagicMock()
+    sent = [goals.send("move_j", MoveJ, MoveJ.Goal(), on_change) for on_change in (fail, fail, lambda sent: None)]
+    goals.cancel_unaccepted()
+    assert [goal.phase for goal in sent] == [Phase.CANCELING] * 3

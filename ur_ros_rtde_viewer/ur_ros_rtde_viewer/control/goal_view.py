@@ -46,16 +46,16 @@ class GoalView:
         self.cancel()
 
     def _on_change(self, goal: SentGoal) -> None:
+        """Changes the elements last: this fails if the tab was just closed."""
+        if goal.has_ended and self._on_end is not None:
+            self._on_end(goal)
         now = time.monotonic()
         if not self._closed and (goal.phase != Phase.RUNNING or now - self._shown_at >= REFRESH_PERIOD):
             self._shown_at = now
             self._cancel.visible = not goal.has_ended
-            self._cancel.disabled = goal.phase == Phase.CANCELING
             self._progress.visible = goal.progress is not None and not goal.has_ended
             self._progress.value = 100.0 * (goal.progress or 0.0)
             self._text.content = _text(goal)
-        if goal.has_ended and self._on_end is not None:
-            self._on_end(goal)
 
 
 def escaped(text: str) -> str:

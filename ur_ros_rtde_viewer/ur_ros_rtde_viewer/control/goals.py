@@ -1,5 +1,6 @@
 """Sends goals of any action, and reports feedback, rejections and results."""
 
+import logging
 import threading
 import time
 from dataclasses import dataclass, field
@@ -15,6 +16,8 @@ from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
 from ur_ros_rtde_msgs.msg import GoalRejected
 
 from .control_node import ControlNode
+
+logger = logging.getLogger(__name__)
 
 DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
 END_TIMEOUT = 5.0  # s, for the results of all canceled goals
@@ -68,7 +71,14 @@ class SentGoal:
         self.phase, self.message = phase, message or self.message
         if phase in ENDED:
             self.ended.set()
-        self.on_change(self)
+        self.notify()
+
+    def notify(self) -> None:
+        """Calls `on_change`. Its failure must not affect this goal or others: the elements of a closed tab cannot be changed."""
+        try:
+            self.on_change(self)
+        except Exception:
+            logger.exception("a change of a goal of %s cannot be shown", self.action)
 
 
 class Goals:
@@ -155,7 +165,7 @@ class Goals:
         def on_feedback(message: Any) -> None:
             if not sent.has_ended:
                 sent.feedback = message.feedback
-                sent.on_change(sent)
+                sent.notify()
 
         sent.driver = DriverWatch(self._control.node, client, sent.action)
         client.send_goal_async(goal, feedback_callback=on_feedback).add_done_callback(
@@ -194,11 +204,13 @@ class Goals:
 
     @staticmethod
     def _cancel(sent: SentGoal) -> None:
-        if sent.has_ended or sent.phase == Phase.CANCELING:
+        """Sends a request in each call: an earlier one may have been lost or rejected."""
+        if sent.has_ended:
             return
-        sent.change(Phase.CANCELING)
         if sent.handle is not None:
             sent.handle.cancel_goal_async()
+        if sent.phase != Phase.CANCELING:
+            sent.change(Phase.CANCELING)
 
     def _on_rejection(self, message: GoalRejected) -> None:
         self._reasons[bytes(message.goal_id.uuid)] = message.message
