@@ -12,6 +12,7 @@ from ur_ros_rtde_viewer.control.form_panel import FormPanel
 from ur_ros_rtde_viewer.control.goals import Goals, Phase
 from ur_ros_rtde_viewer.control.robot_control import RobotControl
 from ur_ros_rtde_viewer.control.target_panel import TargetPanel
+from ur_ros_rtde_viewer.state.robot_state import Joints, RobotState
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -22,7 +23,8 @@ BACKGROUND = True
 def robot(control, monkeypatch):
     """A RobotControl whose actions do not answer."""
     monkeypatch.setattr(goals_module, "ActionClient", lambda node, action, name: MagicMock())
-    created = RobotControl(control, MagicMock(), MagicMock(), lambda: None)
+    state = RobotState(joints=Joints(0.0, *np.zeros((3, 6))), age=0.0, pose_age=0.0)
+    created = RobotControl(control, MagicMock(state=state), MagicMock(), lambda: None)
     created.action_types = {"move_j": "ur_ros_rtde_msgs/action/MoveJ"}
     return created
 
@@ -59,7 +61,6 @@ def wait_for(calls):
 @pytest.fixture
 def form(server, robot):
     panel = FormPanel(server.gui, server.gui.add_folder("commands"), robot)
-    robot.view.state = SimpleNamespace(actual_joints=None, joints=SimpleNamespace(positions=np.zeros(6)), tcp_pose=None, is_silent=False)
     panel._use_current_position()
     return panel
 
@@ -80,7 +81,6 @@ def test_a_form_that_is_still_read_when_stop_is_pressed_sends_nothing(server, ro
 @pytest.mark.parametrize("stops", [False, True])
 def test_execute_that_waits_for_the_loop_when_stop_is_pressed_sends_nothing(server, robot, stops):
     page, posted = Page(server), []
-    robot.view.state = SimpleNamespace(actual_joints=None, joints=SimpleNamespace(positions=np.zeros(6)), tcp_pose=None, is_silent=False)
     panel = TargetPanel(SimpleNamespace(gui=server.gui, scene=MagicMock()), server.gui.add_folder("target"), robot, posted.append)
     panel._plan = MagicMock(action=MoveJ, goal=lambda fraction: MoveJ.Goal())
     panel._plan.name = "move_j"

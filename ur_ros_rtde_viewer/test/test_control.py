@@ -198,7 +198,7 @@ def target(server):
     robot = MagicMock(joint_positions=np.zeros(6))
     panel = TargetPanel(SimpleNamespace(gui=server.gui, scene=MagicMock()), server.gui.add_folder("target"), robot, posted.append)
     panel._gizmo = SimpleNamespace(position=np.zeros(3), wxyz=np.array((1.0, 0.0, 0.0, 0.0)))
-    robot.view.state.tcp_pose = SimpleNamespace(position=np.zeros(3), wxyz=np.array((1.0, 0.0, 0.0, 0.0)))
+    robot.tcp_pose = SimpleNamespace(position=np.zeros(3), wxyz=np.array((1.0, 0.0, 0.0, 0.0)))
     return panel, robot.goals, posted
 
 

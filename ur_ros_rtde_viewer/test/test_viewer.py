@@ -87,6 +87,7 @@ def near(shown, expected):
 def test_shows_the_reported_model_at_the_position_of_the_robot(viewer, robot):
     update_until(viewer, lambda: 'name="ur10e"' in robot.scene.urdf, "the model that the driver reports")
     update_until(viewer, lambda: near(robot.scene.arm, HOME), "the arm to show the position")
+    update_until(viewer, lambda: robot.state.is_current, "the pose of the TCP")
     update_until(viewer, lambda: len(robot.scene._surfaces) == 1, "the surface of the simulated world")
 
 

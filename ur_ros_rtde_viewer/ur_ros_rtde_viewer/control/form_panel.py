@@ -37,7 +37,7 @@ class FormPanel:
             self._goals_folder = gui.add_folder("Goals", visible=False)
         self._action.on_update(self._locked(self._show))
         self._send_button.on_click(self._clicked)
-        self._position_button.on_click(self._locked(self._use_current_position))
+        self._position_button.on_click(self._locked(self._refresh))
         self.update_actions()
 
     def _locked(self, function: Callable[[], None]) -> Callable[[Any], None]:
@@ -118,6 +118,12 @@ class FormPanel:
             text = self._robot.current(field.source)
             if text is not None:
                 self._inputs[field.path].value = text
+
+    def _refresh(self) -> None:
+        """Uses the current position, or says why there is none."""
+        silence = self._robot.silence
+        self._show_error(f"The current position is not known: {silence}." if silence else "")
+        self._use_current_position()
 
     def _show_error(self, text: str) -> None:
         self._error.content = escaped(text)

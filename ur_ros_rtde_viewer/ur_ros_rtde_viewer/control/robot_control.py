@@ -1,12 +1,13 @@
 """What the controls of all browser tabs share for one robot."""
 
+import math
 import time
 from typing import Any, Callable, Dict, Optional
 
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 
-from ..state.robot_state import RobotState
+from ..state.robot_state import Pose, RobotState
 from . import action_forms
 from .action_forms import Source
 from .control_node import ControlNode
@@ -59,14 +60,33 @@ class RobotControl:
         self._stopper.press(report)
 
     @property
-    def joint_positions(self) -> Optional[np.ndarray]:
-        """Positions of the real arm, rad, also while fake joint states are shown. None if there is no state."""
+    def last_joint_positions(self) -> Optional[np.ndarray]:
+        """Positions of the real arm, rad, also while fake joint states are shown. They may be old. None if none were received."""
         joints = self.view.state.actual_joints or self.view.state.joints
         return None if joints is None else joints.positions
 
+    @property
+    def joint_positions(self) -> Optional[np.ndarray]:
+        """Current positions of the real arm, rad. None if `silence` says why there are none."""
+        return self.last_joint_positions if self.view.state.is_current else None
+
+    @property
+    def tcp_pose(self) -> Optional[Pose]:
+        """Current pose of the TCP in base. None if there is none."""
+        return self.view.state.tcp_pose if self.view.state.is_current else None
+
+    @property
+    def silence(self) -> str:
+        """Why there is no current state. Empty if there is one."""
+        state = self.view.state
+        if state.is_current:
+            return ""
+        age, topic = (state.age, "joint_states") if state.is_silent else (state.pose_age, "tcp_pose")
+        return f"no messages on {self.view.topics.name_of(topic)}" + (f" for {age:.0f} s" if math.isfinite(age) else "")
+
     def current(self, source: Source) -> Optional[str]:
-        """Returns the text of an input that begins with the state of the arm."""
-        joints, pose = self.joint_positions, self.view.state.tcp_pose
+        """Returns the text of an input that begins with the state of the arm. None if there is no current state."""
+        joints, pose = self.joint_positions, self.tcp_pose
         if source == Source.JOINT_POSITIONS and joints is not None:
             return action_forms.numbers_text(joints)
         if source == Source.TCP_POSITION and pose is not None:

@@ -73,7 +73,7 @@ class TargetPanel:
     # --- Target ----------------------------------------------------------------------------------------------------
 
     def _tcp(self) -> Optional[PoseTarget]:
-        pose = self._robot.view.state.tcp_pose
+        pose = self._robot.tcp_pose
         return None if pose is None else PoseTarget(pose.position, pose.wxyz)
 
     def _show_or_hide(self) -> None:
@@ -87,7 +87,7 @@ class TargetPanel:
         self._hide()
         scene, tcp = self._robot.view.scene, self._tcp()
         if scene.arm is None or tcp is None or self._robot.joint_positions is None:
-            self._say("there is no state of the robot yet")
+            self._say_missing_state()
             return
         self._urdf = xml.fromstring(scene.urdf)
         self._base = scene.arm.link_path("base")
@@ -109,6 +109,9 @@ class TargetPanel:
     def _say(self, text: str) -> None:
         self._text.content = text
 
+    def _say_missing_state(self) -> None:
+        self._say(f"*Execute* needs the state of the robot: {escaped(self._robot.silence or 'it is not received yet')}.")
+
     # --- Plan ------------------------------------------------------------------------------------------------------
 
     def _forget_plan(self) -> None:
@@ -126,7 +129,10 @@ class TargetPanel:
         """Plans the motion to the target."""
         self._forget_plan()
         joints, tcp = self._robot.joint_positions, self._tcp()
-        if self._gizmo is None or joints is None or tcp is None:
+        if self._gizmo is None:
+            return
+        if joints is None or tcp is None:
+            self._say_missing_state()
             return
         self._say("Planning")
         target = PoseTarget(np.array(self._gizmo.position), np.array(self._gizmo.wxyz))
@@ -174,7 +180,11 @@ class TargetPanel:
 
     def _send(self, stop_count: int) -> None:
         plan, joints = self._plan, self._robot.joint_positions
-        if plan is None or joints is None:
+        if plan is None:
+            return
+        if joints is None:
+            self._forget_plan()
+            self._say_missing_state()
             return
         if not plan.starts_at(joints):
             self._solve()

@@ -39,7 +39,7 @@ class TwinPanel:
         if self._closed:  # the elements do not exist anymore
             return
         self.switch.value, self.message.content = on, message
-        positions = self._robot.joint_positions
+        positions = self._robot.last_joint_positions
         for index, slider in enumerate(self.sliders):
             slider.disabled = not on
             if on and positions is not None:

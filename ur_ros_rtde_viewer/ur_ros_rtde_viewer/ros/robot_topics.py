@@ -45,7 +45,7 @@ class RobotTopics:
         self.namespace = namespace
         self.state = RobotState()
         self.joint_names = JOINTS  # with the prefix of the driver, once a message was received
-        self._last_received = -float("inf")
+        self._last_received = self._last_pose = -float("inf")
         self._joints = self._latest(JointState, "joint_states")
         self._target = self._latest(JointState, "target_joint_states")
         self._tcp_pose = self._latest(PoseStamped, "tcp_pose")
@@ -97,6 +97,7 @@ class RobotTopics:
             state.actual_joints = self._read_joints(self._actual, state.actual_joints)
         pose = self._tcp_pose.take()
         if pose is not None:
+            self._last_pose = time.monotonic()
             p, q = pose.pose.position, pose.pose.orientation
             state.tcp_pose = Pose(np.array((p.x, p.y, p.z)), np.array((q.w, q.x, q.y, q.z)))
         wrench = self._wrench.take()
@@ -107,7 +108,8 @@ class RobotTopics:
         if io is not None:
             values = (io.digital_inputs, io.digital_outputs, io.analog_inputs, io.analog_outputs)
             state.signals = Signals(*map(tuple, values))
-        state.age = time.monotonic() - self._last_received
+        now = time.monotonic()
+        state.age, state.pose_age = now - self._last_received, now - self._last_pose
 
     def _learn_names(self, message: JointState) -> None:
         first = next((name for name in message.name if name.endswith(JOINTS[0])), None)

@@ -81,11 +81,17 @@ class RobotState:
     other_drivers: Tuple[str, ...] = ()  # namespaces of drivers that the page does not show; before the first joint states only
     address: str = ""  # of the controller, that the driver reports
     age: float = float("inf")  # s, since the last joint state was received
+    pose_age: float = float("inf")  # s, since the last tcp_pose was received
 
     @property
     def is_silent(self) -> bool:
         """Whether no joint states have arrived for some time."""
         return self.age > SILENT
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the position is that of the arm now. The driver publishes fake joint states also without a robot, but no TCP pose."""
+        return max(self.age, self.pose_age) <= SILENT
 
     @property
     def is_stopped(self) -> bool:
