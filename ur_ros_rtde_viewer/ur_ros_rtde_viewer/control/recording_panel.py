@@ -31,14 +31,18 @@ class RecordingPanel:
         self._button.on_click(lambda _event: post(self.toggle))
         self._download.on_click(lambda event: self._send(event.client))
         self.is_recording = self._closed = False
+        self._is_pending = False  # a request was not answered yet
 
     def toggle(self) -> None:
-        self._button.disabled = True
+        if self._is_pending:  # a second click
+            return
+        self._button.disabled = self._is_pending = True
         if self.is_recording:
             self._services.call(StopRecording, "stop_recording", self._stopped)
             return
         self._file = self._folder / time.strftime("recording_%Y%m%d_%H%M%S.csv")
-        self._services.call(StartRecording, "start_recording", self._started, filename=str(self._file), fields=self._fields.value.split())
+        self._services.call(StartRecording, "start_recording", self._started, on_late=self._started_late,
+                            filename=str(self._file), fields=self._fields.value.split())
 
     def _started(self, response: Optional[Any], reason: str) -> None:
         self._show_state(response is not None and response.success)
@@ -49,8 +53,14 @@ class RecordingPanel:
         if self._closed:  # in the meantime
             self.close()
 
+    def _started_late(self, response: Any) -> None:
+        """Stops the recording: its start was reported as failed."""
+        if response.success:
+            self._message.content = "The recording has started too late and was stopped."
+            self._stop()
+
     def _stopped(self, response: Optional[Any], reason: str) -> None:
-        self._show_state(False)
+        self._show_state(response is None)  # without an answer, the recording may go on
         if response is None or not response.success:
             self._message.content = reason if response is None else response.message
             return
@@ -63,7 +73,7 @@ class RecordingPanel:
             self._replay.replay(file.name, lambda ended: read_file(file, ended))
 
     def _show_state(self, recording: bool) -> None:
-        self.is_recording = recording
+        self.is_recording, self._is_pending = recording, False
         self._button.label, self._button.disabled = "Stop" if recording else "Record", False
         self._fields.disabled = recording
 
@@ -86,4 +96,7 @@ class RecordingPanel:
     def close(self) -> None:
         self._closed = True
         if self.is_recording:
-            self._services.call(StopRecording, "stop_recording", lambda _response, _reason: None)
+            self._stop()
+
+    def _stop(self) -> None:
+        self._services.call(StopRecording, "stop_recording", lambda _response, _reason: None)

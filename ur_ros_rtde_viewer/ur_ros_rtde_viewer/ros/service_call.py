@@ -8,6 +8,7 @@ from .nodes import Nodes
 
 TIMEOUT = 10.0  # s
 OnEnd = Callable[[Any, str], None]  # (response, "") or (None, reason)
+OnLate = Callable[[Any], None]  # (response)
 
 
 @dataclass
@@ -16,6 +17,7 @@ class _Call:
     client: Any
     request: Any
     on_end: OnEnd
+    on_late: Optional[OnLate]
     deadline: float
     future: Optional[Any] = None
 
@@ -35,11 +37,12 @@ class ServiceCaller:
         self._clients: Dict[str, Any] = {}
         self._calls: List[_Call] = []
 
-    def call(self, kind: Any, name: str, on_end: OnEnd, **request: Any) -> None:
-        """Waits up to TIMEOUT for the service and its response."""
+    def call(self, kind: Any, name: str, on_end: OnEnd, on_late: Optional[OnLate] = None, **request: Any) -> None:
+        """Waits up to TIMEOUT for the service and its response. A response that arrives afterwards is passed to `on_late`."""
         if name not in self._clients:
             self._clients[name] = self._node.create_client(kind, self._name_of(name))
-        self._calls.append(_Call(self._name_of(name), self._clients[name], kind.Request(**request), on_end, time.monotonic() + TIMEOUT))
+        self._calls.append(_Call(self._name_of(name), self._clients[name], kind.Request(**request), on_end, on_late,
+                                 time.monotonic() + TIMEOUT))
 
     def update(self) -> None:
         """Sends requests whose service has appeared, and ends calls. Called once per update."""
@@ -51,6 +54,8 @@ class ServiceCaller:
                 call.on_end(call.future.result(), "")
             elif time.monotonic() > call.deadline:
                 self._calls.remove(call)
+                if call.future is not None and call.on_late is not None:
+                    call.future.add_done_callback(lambda future, on_late=call.on_late: on_late(future.result()))
                 call.on_end(None, call.reason)
 
     @property
