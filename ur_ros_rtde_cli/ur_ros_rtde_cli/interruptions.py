@@ -45,6 +45,11 @@ class PendingInterruption:
         for number, handler in self._previous.items():
             signal.signal(number, handler)
 
+    @property
+    def is_pending(self) -> bool:
+        """Whether there was a signal since the last take()."""
+        return self._pending is not None
+
     def take(self) -> Optional[Interrupted]:
         """Returns the stored interruption and clears it."""
         # A closed output stays closed, so it is reported only once, and only if there was no signal before.

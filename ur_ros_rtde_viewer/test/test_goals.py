@@ -1,19 +1,25 @@
 """Goals of the page, without ROS: what is offered, sent and canceled, and how goals end."""
 
+import logging
+import os
+import signal
 import threading
+import time
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import pytest
 import rclpy
+from ur_ros_rtde_cli import interruptions
 from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_viewer.control import goals as goals_module
 from ur_ros_rtde_viewer.control.control_node import ControlNode
-from ur_ros_rtde_viewer.control.goals import END_TIMEOUT, Goals, Phase
+from ur_ros_rtde_viewer.control.goals import END_TIMEOUT, Goals, Phase, end_all
 
 from ur_ros_rtde_msgs.action import MoveJ
 
 BACKGROUND = True
+BRAKING_TIMEOUT = 30.0  # s, of the driver
 
 
 @pytest.mark.parametrize("namespace", ["", "left", "cell/left"])
@@ -120,18 +126,42 @@ def test_a_driver_that_is_missing_for_a_moment_keeps_its_goals(control, clock):
     assert goal.phase == Phase.RUNNING
 
 
-def test_the_end_waits_for_all_goals_together(control, clock):
-    goals, waits = Goals(control, ""), []
-    for _ in range(3):
+def test_the_end_waits_for_all_goals_together_as_long_as_the_arm_may_brake(control, clock, caplog):
+    robots = [Goals(control, name) for name in ("left", "right")]
+    for goals in robots:
         goal, _ = accepted_goal(goals, lambda sent: None)
+        goal.ended.wait = lambda timeout: clock.__setitem__(0, clock[0] + timeout)
+    accepted_goal(robots[0], lambda sent: None)[0].change(Phase.SUCCEEDED)
+    begin = clock[0]
+    with caplog.at_level(logging.INFO):
+        end_all(robots, lambda: False)
+    assert clock[0] - begin == pytest.approx(END_TIMEOUT) and END_TIMEOUT > BRAKING_TIMEOUT
+    assert "waiting up to 35 s for the end of /left/move_j and /right/move_j" in caplog.text
+    assert "/left/move_j and /right/move_j may still be running" in caplog.text
 
-        def wait(timeout):
-            waits.append(timeout)
-            clock[0] += 0.6 * END_TIMEOUT
 
-        goal.ended.wait = wait
-    goals.end()
-    assert waits == pytest.approx([END_TIMEOUT, 0.4 * END_TIMEOUT, 0.0])
+def test_the_end_does_not_wait_without_goals(control, caplog):
+    goals = Goals(control, "")
+    accepted_goal(goals, lambda sent: None)[0].change(Phase.SUCCEEDED)
+    with caplog.at_level(logging.INFO):
+        end_all([goals], lambda: pytest.fail("it has waited"))
+    assert not caplog.text
+
+
+def test_a_second_signal_ends_the_wait(control, monkeypatch):
+    monkeypatch.setattr(interruptions, "SECOND_SIGNAL_AFTER", 0.0)
+    goals = Goals(control, "")
+    goal, _ = accepted_goal(goals, lambda sent: None)
+    interruption = interruptions.PendingInterruption()
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert interruption.take() is not None and not interruption.is_pending
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.monotonic()
+        end_all([goals], lambda: interruption.is_pending)
+        assert 0.2 < time.monotonic() - begin < 0.5 * END_TIMEOUT and goal.phase == Phase.CANCELING
+    finally:
+        interruption.restore_handlers()
 
 
 def fail(_sent):

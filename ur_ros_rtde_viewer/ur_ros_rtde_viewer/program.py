@@ -54,7 +54,7 @@ def _serve(options: argparse.Namespace) -> None:
         nodes = Nodes()
         ending.callback(nodes.close)
         viewer = Viewer(server, nodes, options)
-        ending.callback(viewer.close)
+        ending.callback(viewer.close, lambda: interruption.is_pending)  # by a second signal
         server.on_client_connect(lambda _client: print("A browser shows the page.", flush=True))
         print(f"The viewer runs at {url(server, token)} until Ctrl-C.", flush=True)
         viewer.run(lambda: interruption.take() is not None)

@@ -90,16 +90,18 @@ class Viewer:
             if self.control is not None:
                 self.control.update()
 
-    def close(self) -> None:
-        """Ends what the page has started: recordings and the digital twin. Waits for the driver, but not long."""
+    def close(self, is_interrupted: Callable[[], bool] = lambda: False) -> None:
+        """Ends what the page has started: goals, recordings and the digital twin. Waits for the driver until `is_interrupted()`."""
         if self.control is not None:
-            self.control.cancel_all()
+            self.control.end_goals(is_interrupted)
         for robot in self.robots:
             robot.close()
         if self.control is not None:
             self.control.close()
         end = time.monotonic() + CLOSE_TIMEOUT
-        while time.monotonic() < end and not all(robot.services.is_idle for robot in self.robots):
+        while not all(robot.services.is_idle for robot in self.robots):
             for robot in self.robots:
                 robot.services.update()
+            if time.monotonic() >= end or is_interrupted():
+                break
             self.nodes.spin_once(0.01)

@@ -3,12 +3,13 @@
 import functools
 import threading
 import time
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 from ..page import style
 from ..panels.state_panel import StatePanel
 from .control_node import ControlNode
 from .form_panel import FormPanel
+from .goals import end_all
 from .jog_panel import JogPanel
 from .robot_control import RobotControl
 from .speed_control import SpeedControl
@@ -112,10 +113,9 @@ class Control:
         for form in forms:
             form.update_actions()
 
-    def cancel_all(self) -> None:
+    def end_goals(self, is_interrupted: Callable[[], bool]) -> None:
         """Cancels the goals of all robots: none of them waits for the others to come to rest."""
-        for robot in self._robots:
-            robot.goals.cancel_all()
+        end_all([robot.goals for robot in self._robots], is_interrupted)
 
     def close(self) -> None:
         """Called after the robots were closed."""

@@ -5,7 +5,7 @@ import threading
 import time
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, Iterable, List, Optional
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
@@ -20,7 +20,8 @@ from .control_node import ControlNode
 logger = logging.getLogger(__name__)
 
 DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
-END_TIMEOUT = 5.0  # s, for the results of all canceled goals
+END_TIMEOUT = 35.0  # s, for the results of all canceled goals, which may brake within gentle limits of their own
+END_CHECK_PERIOD = 0.1  # s
 REASON_TIMEOUT = 2.0  # s, for the reason of a rejection
 POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
 DASHBOARD = "dashboard/"  # prefix of the actions of dashboard_server
@@ -127,16 +128,12 @@ class Goals:
     def cancel(self, sent: SentGoal) -> None:
         self._control.post(lambda: self._cancel(sent))
 
-    def cancel_all(self) -> None:
-        for sent in self._open:
+    def cancel_all(self) -> List[SentGoal]:
+        """Returns the goals that have not ended yet."""
+        canceled = [sent for sent in self._open if not sent.has_ended]
+        for sent in canceled:
             self.cancel(sent)
-
-    def end(self) -> None:
-        """Cancels all goals and waits for their results, so that the arm is at rest when the program exits."""
-        self.cancel_all()
-        deadline = time.monotonic() + END_TIMEOUT
-        for sent in self._open:
-            sent.ended.wait(max(0.0, deadline - time.monotonic()))
+        return canceled
 
     def cancel_unaccepted(self) -> None:
         """Cancels the goals that wait for their server or its response, or that are still on their way to send(): after STOP, none of
@@ -232,3 +229,21 @@ class Goals:
                 (then if holds else otherwise)()
 
         timer = self._control.node.create_timer(POLL_PERIOD, check)
+
+
+def end_all(robots: Iterable[Goals], is_interrupted: Callable[[], bool]) -> None:
+    """Cancels all goals and waits for their results, so that the arms are at rest when the program exits. Returns early if
+    `is_interrupted()`, which is called every END_CHECK_PERIOD."""
+    waiting = [sent for goals in robots for sent in goals.cancel_all()]
+    if waiting:
+        logger.info("waiting up to %g s for the end of %s; a second signal ends the viewer at once", END_TIMEOUT, _names(waiting))
+    deadline = time.monotonic() + END_TIMEOUT
+    while waiting and not is_interrupted() and (remaining := deadline - time.monotonic()) > 0.0:
+        waiting[0].ended.wait(min(END_CHECK_PERIOD, remaining))
+        waiting = [sent for sent in waiting if not sent.ended.is_set()]
+    if waiting:
+        logger.warning("%s may still be running: the driver ends the goals of a viewer that has ended", _names(waiting))
+
+
+def _names(goals: Iterable[SentGoal]) -> str:
+    return " and ".join(sorted({sent.action for sent in goals}))

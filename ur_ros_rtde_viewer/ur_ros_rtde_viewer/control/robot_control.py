@@ -51,7 +51,6 @@ class RobotControl:
             self.jog.set_stream_timeout(response.values[0].double_value)
 
     def close(self) -> None:
-        self.goals.end()
         self.twin.close()
 
     def stop(self, report: Report) -> None:
