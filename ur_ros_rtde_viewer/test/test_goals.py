@@ -10,11 +10,13 @@ from unittest.mock import MagicMock
 
 import pytest
 import rclpy
+from rclpy.clock import ClockType
 from ur_ros_rtde_cli import interruptions
 from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_viewer.control import goals as goals_module
-from ur_ros_rtde_viewer.control.control_node import ControlNode
-from ur_ros_rtde_viewer.control.goals import END_TIMEOUT, Goals, Phase, end_all
+from ur_ros_rtde_viewer.control.control_node import ControlNode, create_steady_timer
+from ur_ros_rtde_viewer.control.goals import DISCOVERY_TIMEOUT, END_TIMEOUT, Goals, Phase, end_all
+from ur_ros_rtde_viewer.control.stop import Stopper
 
 from ur_ros_rtde_msgs.action import MoveJ
 
@@ -185,3 +187,36 @@ def test_stop_cancels_the_goals_after_one_that_cannot_be_shown(control):
     sent = [goals.send("move_j", MoveJ, MoveJ.Goal(), on_change) for on_change in (fail, fail, lambda sent: None)]
     goals.cancel_unaccepted()
     assert [goal.phase for goal in sent] == [Phase.CANCELING] * 3
+
+
+def clocks_of_timers(control):
+    return [call.kwargs["clock"].clock_type for call in control.node.create_timer.call_args_list]
+
+
+def test_the_timeout_of_the_discovery_does_not_follow_the_system_clock(control, clock):
+    goals = Goals(control, "")
+    goals.client = MagicMock()
+    goals.client.return_value.server_is_ready.return_value = False
+    goal = goals.send("move_j", MoveJ, MoveJ.Goal(), lambda sent: None)
+    check = control.node.create_timer.call_args.args[1]
+    for elapsed in (0.9, 1.1):
+        clock[0] = 1000.0 + elapsed * DISCOVERY_TIMEOUT
+        assert goal.phase == Phase.SENT
+        check()
+    assert goal.phase == Phase.REJECTED and clocks_of_timers(control) == [ClockType.STEADY_TIME] * 2
+
+
+def test_the_timeouts_of_stop_do_not_follow_the_system_clock(control):
+    Stopper(control, MagicMock()).press(lambda outcome, text: None)
+    assert clocks_of_timers(control) == [ClockType.STEADY_TIME]
+
+
+def test_a_steady_timer_calls_back():
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node, called = ControlNode(context), threading.Event()
+    timer = create_steady_timer(node.node, 0.01, called.set)
+    node.start()
+    assert called.wait(20.0) and timer.clock.clock_type == ClockType.STEADY_TIME
+    node.close()
+    context.try_shutdown()

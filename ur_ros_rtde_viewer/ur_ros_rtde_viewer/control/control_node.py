@@ -9,12 +9,18 @@ import threading
 from typing import Any, Callable
 
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 
 logger = logging.getLogger(__name__)
 
 WAIT_TIMEOUT = 1.0  # s
 JOIN_TIMEOUT = 5.0  # s
+
+
+def create_steady_timer(node: Any, period: float, callback: Callable[[], None]) -> Any:
+    """Returns a timer that does not follow the system clock, which may be set, as the clock of the node does."""
+    return node.create_timer(period, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 class ControlNode:

@@ -15,7 +15,7 @@ from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
 
 from ur_ros_rtde_msgs.msg import GoalRejected
 
-from .control_node import ControlNode
+from .control_node import ControlNode, create_steady_timer
 
 logger = logging.getLogger(__name__)
 
@@ -95,7 +95,7 @@ class Goals:
         self._open_lock = threading.Lock()  # goals are sent by the threads of the page
         control.node.create_subscription(GoalRejected, self.full_name("goal_rejections"), self._on_rejection,
                                          QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-        control.node.create_timer(CHECK_PERIOD, self._check_drivers)
+        create_steady_timer(control.node, CHECK_PERIOD, self._check_drivers)
 
     def full_name(self, name: str) -> str:
         return f"/{self._namespace}/{name}" if self._namespace else f"/{name}"
@@ -219,16 +219,15 @@ class Goals:
         if condition():
             then()
             return
-        clock = self._control.node.get_clock()
-        end = clock.now().nanoseconds + limit * 1e9
+        end = time.monotonic() + limit
 
         def check() -> None:
             holds = condition()
-            if holds or clock.now().nanoseconds >= end:
+            if holds or time.monotonic() >= end:
                 self._control.node.destroy_timer(timer)
                 (then if holds else otherwise)()
 
-        timer = self._control.node.create_timer(POLL_PERIOD, check)
+        timer = create_steady_timer(self._control.node, POLL_PERIOD, check)
 
 
 def end_all(robots: Iterable[Goals], is_interrupted: Callable[[], bool]) -> None:

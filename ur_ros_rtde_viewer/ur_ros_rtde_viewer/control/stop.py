@@ -13,7 +13,7 @@ from rclpy.action import ActionClient
 
 from ur_ros_rtde_msgs.action import DashboardCommand, Stop
 
-from .control_node import ControlNode
+from .control_node import ControlNode, create_steady_timer
 from .goals import Goals
 
 ACCEPTANCE_TIMEOUT = 0.3  # s; the driver needs 2 ms
@@ -66,7 +66,7 @@ class _Silence:
     def __init__(self, node: Any, timeout: float, on_silence: Callable[[], None]):
         self._node, self._on_silence = node, on_silence
         self._missed = 0  # checks since an answer
-        self._timer = node.create_timer(timeout / CHECKS, self._check)
+        self._timer = create_steady_timer(node, timeout / CHECKS, self._check)
 
     def _check(self) -> None:
         self._missed += 1
