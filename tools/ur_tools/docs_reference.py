@@ -9,13 +9,12 @@ import subprocess
 import sys
 from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
-from . import docs_commands, docs_examples
+from . import docs_commands, docs_examples, docs_plugin_api
 from .docs_commands import Command
 from .layout import ROOT
 
 MESSAGES = ROOT / "ur_ros_rtde_msgs"
 PARTS = ("Goal", "Result", "Feedback")
-HEADERS = ("ur_ros_rtde/include/ur_ros_rtde", "ur_ros_rtde_robot/include/ur_ros_rtde_robot")
 FORWARDING_HELP = ("sim", "shell")  # pass --help on to a program, which has to be built
 # The argument of a function that creates a publisher, a subscription or a service, and its type.
 ENDPOINT = re.compile(r'\b(create_publisher|create_subscription|create_service|serve)<([\w:]+)>\(\s*"(/?\w+)"')
@@ -212,16 +211,6 @@ def _command_line() -> Page:
     return page
 
 
-def _plugin_api() -> Page:
-    page = ["# Plugin API", "", "The public headers, for authors of plugins. `writing_a_plugin.md` leads to the first plugin.", ""]
-    for folder in HEADERS:
-        page += [f"## {folder.split('/')[0]}", ""]
-        for header in sorted((ROOT / folder).rglob("*.hpp")):
-            if "detail" not in header.parts:
-                page += [f"### {header.relative_to((ROOT / folder).parent)}", "", "```cpp", header.read_text().rstrip(), "```", ""]
-    return page
-
-
 def _pages(source: pathlib.Path) -> Iterator[Tuple[str, Page]]:
     for page in sorted((source / "docs" / "use" / "commands").glob("*.md")):
         if page.stem != "README":
@@ -232,7 +221,7 @@ def _pages(source: pathlib.Path) -> Iterator[Tuple[str, Page]]:
     yield "services", _messages("Service types", sorted((MESSAGES / "srv").glob("*.srv")))
     yield "topics", _topics()
     yield "command_line", _command_line()
-    yield "plugin_api", _plugin_api()
+    yield from docs_plugin_api.pages()
 
 
 def write(source: pathlib.Path) -> None:

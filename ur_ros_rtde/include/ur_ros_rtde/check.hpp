@@ -36,11 +36,31 @@ class Check {
   {
   }
 
+  // Numbers and texts
+
+  /// Finite, and low <= value <= high.
+  Check & in_range(std::string_view field, double value, double low, double high, std::string_view unit = "");
+  /// Finite, and 0 < value <= high.
+  Check & above_zero(std::string_view field, double value, double high, std::string_view unit = "");
+  /// One line of text without control characters, 1 to `longest` bytes.
+  Check & line(std::string_view field, std::string_view text, std::size_t longest);
+  /// Any other condition. `message`: the error if it does not hold.
+  Check & that(bool holds, std::string message, ErrorCode code = ErrorCode::invalid_goal);
+
+  // Joints
+
   /// Six finite values within the position limits of the arm, rad.
   Check & joints(std::string_view field, const std::vector<double> & values);
-  Check & in_range(std::string_view field, double value, double low, double high, std::string_view unit = "");
-  /// 0 < value <= high
-  Check & above_zero(std::string_view field, double value, double high, std::string_view unit = "");
+  /// Six finite values, the magnitude of each at most the limit of its joint.
+  Check & each_joint(std::string_view field, const std::vector<double> & values, const Vector6 & limits,
+                     std::string_view unit);
+  /// As each_joint(), with the velocity limits of the arm and at most 3.14 rad/s; not all zero.
+  Check & joint_velocities(std::string_view field, const std::vector<double> & values);
+  /// Six finite values within the torque limits of the arm, Nm.
+  Check & joint_torques(std::string_view field, const std::vector<double> & values);
+
+  // Poses and vectors
+
   /// Finite position within reach, and a quaternion that can be normalized.
   Check & pose(std::string_view field, const geometry_msgs::msg::Pose & pose);
   /// Finite and within reach.
@@ -52,16 +72,8 @@ class Check {
                  std::string_view unit = "");
   /// |linear| <= 3 m/s, |angular| <= 3.14 rad/s, not both zero.
   Check & twist(std::string_view field, const geometry_msgs::msg::Twist & twist);
-  /// Six finite values, the magnitude of each at most the limit of its joint.
-  Check & each_joint(std::string_view field, const std::vector<double> & values, const Vector6 & limits,
-                     std::string_view unit);
-  /// As each_joint(), with the velocity limits of the arm and at most 3.14 rad/s; not all zero.
-  Check & joint_velocities(std::string_view field, const std::vector<double> & values);
-  /// Six finite values within the torque limits of the arm, Nm.
-  Check & joint_torques(std::string_view field, const std::vector<double> & values);
-  /// One line of text without control characters, 1 to `longest` bytes.
-  Check & line(std::string_view field, std::string_view text, std::size_t longest);
-  Check & that(bool holds, std::string message, ErrorCode code = ErrorCode::invalid_goal);
+
+  // State of the robot
 
   /// The robot can execute this command now, and no other goal is in the way. The checks below include it.
   Check & ready();
@@ -86,7 +98,11 @@ class Check {
   Check & reachable_in(std::string_view field, const std::vector<double> & positions, double time,
                        double peak);
 
+  // Outcome of the checks
+
+  /// None has failed so far.
   bool ok() const { return !error_; }
+  /// The first failure.
   const std::optional<Error> & error() const { return error_; }
   /// The queries in the order of their calls.
   std::vector<RobotQuery> take_queries() { return std::move(queries_); }
@@ -105,6 +121,7 @@ class Check {
 /// Converts a pose of a goal to a UR pose: position (m) and rotation vector (rad). Throws RobotError
 /// (invalid_goal) for a quaternion that cannot be normalized.
 std::vector<double> to_ur(const geometry_msgs::msg::Pose & pose);
+/// Linear part (m/s), then angular part (rad/s).
 std::vector<double> to_ur(const geometry_msgs::msg::Twist & twist);
 /// Converts a UR pose to a pose of a result or feedback.
 geometry_msgs::msg::Pose to_ros(const Vector6 & pose);

@@ -50,6 +50,8 @@ class Command : public CommandPlugin {
 
   ~Command() override { stop_server(); }
 
+  // To override
+
   /// How goals share the robot with the goals of other commands. Asked once.
   virtual CommandTraits traits() const { return {}; }
   /// Checks the fields of the goal, then what depends on the robot. Runs in the thread that serves the
@@ -66,6 +68,8 @@ class Command : public CommandPlugin {
   {
     write_standard_fields(outcome, result);
   }
+
+  // For the driver
 
   void start_action_server(CommandHost & host, const std::string & name) override;
   void stop_action_server() override { stop_server(); }

@@ -15,6 +15,8 @@
 
 namespace ur_ros_rtde {
 
+// For the driver
+
 /// Success if the robot has a dashboard server, and it is connected and has a version within `limits`.
 Status dashboard_ready(const std::string & action, const DashboardLimits & limits, DashboardHost & host);
 
@@ -23,6 +25,8 @@ Error stopped_through_dashboard(const std::string & goal);
 
 /// Fails unless `text` is one of `texts`. Every text is allowed if `texts` is empty.
 void check_text(const std::string & text, const std::vector<std::string> & texts, Check & check);
+
+// For plugins
 
 /// Base class of a command to the dashboard server, which is an action of type `A` of dashboard_server; see
 /// also Command<A>. Most commands only describe their request:
@@ -47,7 +51,11 @@ class DashboardCommand : public DashboardPlugin {
 
   ~DashboardCommand() override { stop_server(); }
 
+  // To override
+
+  /// The versions of PolyScope that have the command, and the valid values of the goal's field `text`.
   virtual Limits limits() const { return {}; }
+  /// The line to send, and the answer and the state of the robot that confirm it.
   virtual Request request(const Goal &) const { return {}; }
   /// The command ends the program of the robot. Its goals also end a script of the driver that has not begun
   /// yet, which the dashboard server does not know, and make_ready.
@@ -61,13 +69,14 @@ class DashboardCommand : public DashboardPlugin {
   virtual void check(const Goal & goal, Check & check) const;
   /// By default executes request().
   virtual Outcome run(const Goal & goal, Run & run);
-
   /// Writes the outcome into the result. Override it for results that begin with other fields. Also asked
   /// when the command is loaded, for goals that it never gets.
   virtual void fill_result(const Outcome & outcome, Result & result) const
   {
     write_standard_fields(outcome, result);
   }
+
+  // For the driver
 
   void start_action_server(DashboardHost & host, const std::string & name) override;
   void stop_action_server() override { stop_server(); }

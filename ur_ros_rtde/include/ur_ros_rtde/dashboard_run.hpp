@@ -66,6 +66,8 @@ Status supported(const std::string & action, const DashboardLimits & limits,
 /// Gives a dashboard command access to the dashboard server while it executes a goal, in the goal's thread.
 class DashboardRun {
  public:
+  // For the driver
+
   /// Null if no stop can come; fails if one has come.
   using BeginStart = std::function<Expected<std::shared_ptr<void>>()>;
 
@@ -74,6 +76,8 @@ class DashboardRun {
   virtual ~DashboardRun() = default;
   DashboardRun(const DashboardRun &) = delete;
   DashboardRun & operator=(const DashboardRun &) = delete;
+
+  // Requests
 
   /// Sends a line to the dashboard server and returns its answer. Throws RobotError (link_lost, timeout after
   /// 5 s).
@@ -94,6 +98,8 @@ class DashboardRun {
   Outcome raw(const std::string & line, double timeout = 60.0);
   /// Executes the request with command() or query(). Only this function heeds DashboardRequest::starts.
   Outcome execute(const DashboardRequest & request, double timeout);
+
+  // Waits and result
 
   /// Why the goal has to stop now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const { return stop_request_->reason(); }
@@ -129,6 +135,8 @@ class DashboardRun {
 template <typename A>
 class DashboardGoalRun : public DashboardRun {
  public:
+  // For the driver
+
   using PublishFeedback = std::function<void(const void * feedback)>;
 
   DashboardGoalRun(DashboardConnection & connection, std::shared_ptr<const StopRequest> stop_request,
@@ -137,6 +145,8 @@ class DashboardGoalRun : public DashboardRun {
         publish_(std::move(publish))
   {
   }
+
+  // Result
 
   /// Set the fields that are specific to the action. `success`, `error_code`, `message` and `answer` are
   /// filled in by the base class.

@@ -31,7 +31,11 @@ class Extension : public Command<A> {
  public:
   using Run = typename Command<A>::Run;
 
+  /// The snippet, and what it needs. Called more than once.
   virtual ScriptExtension script() const = 0;
+
+  // For the driver
+
   std::optional<ScriptExtension> script_extension() const final { return script(); }
 };
 

@@ -12,6 +12,11 @@ namespace ur_ros_rtde {
 /// Force mode, freedrive or teach mode, on as long as this object exists. The driver ends it together with
 /// the goal, after its motion, if the goal has to end before, or if a motion in this mode has not been ended
 /// (speedStop(), stopL()) when the object is destroyed.
+///
+///     const Mode pressing = start_force_mode(run, options);
+///     if (Outcome found = search(run); !found) {
+///       return found;  // the mode ends
+///     }
 class [[nodiscard]] Mode {
  public:
   /// A function of ur_rtde that ends the mode.

@@ -27,10 +27,11 @@ class [[nodiscard]] Outcome {
     return Outcome(Error{code, std::move(message)});
   }
 
+  /// True for a success.
   explicit operator bool() const { return error_.code == ErrorCode::none; }
+  /// The code is `none` after success.
   ErrorCode code() const { return error_.code; }
   const std::string & message() const { return error_.message; }
-  /// The error code is `none` after success.
   const Error & error() const { return error_; }
 
  private:

@@ -44,6 +44,8 @@ class DashboardPlugin {
   virtual void stop_action_server() = 0;
 };
 
+// For the driver
+
 /// How a library describes one of its plugins. The host reads it after it has found that the library was
 /// built with the host's own headers (cmake/plugin_abi.cmake).
 struct PluginDescriptor {
@@ -70,7 +72,7 @@ constexpr PluginDescriptor describe(const char * name)
 }  // namespace ur_ros_rtde
 
 /// Exports `Class` as the plugin `action_name`. Use it in a .cpp file, in the namespace of `Class`. The
-/// plugin description names it: <class name="action_name" type="namespace::Class" base_class_type="…"/>.
+/// plugin description names it: `<class name="action_name" type="namespace::Class" base_class_type="…"/>`.
 #define UR_ROS_RTDE_EXPORT(Class, action_name)                                              \
   extern "C" __attribute__((visibility("default")))                                         \
   const ::ur_ros_rtde::PluginDescriptor * ur_ros_rtde_plugin_##Class()                      \

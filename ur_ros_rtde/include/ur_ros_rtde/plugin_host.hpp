@@ -29,10 +29,18 @@ class Robot;
 /// What a server provides to its plugins.
 class PluginHost {
  public:
+  // For the driver
+
   /// `servers_on_demand`: an action server is created for its first client.
   explicit PluginHost(rcl_cxx::Node & node, bool servers_on_demand = false);
 
+  // For plugins
+
+  /// For parameters, topics, services and timers of a plugin.
   rcl_cxx::Node & node() { return node_; }
+
+  // For the driver
+
   Goals & goals() { return goals_; }
   /// The callbacks of stops, of cancel requests and of lost clients. Served by a thread of its own, which
   /// runs no other code of plugins than the check of a stop.
@@ -53,8 +61,10 @@ class PluginHost {
   Goals goals_;
 };
 
+/// What command_server provides to its plugins: see CommandPlugin::on_load().
 class CommandHost : public PluginHost {
  public:
+  /// The parameters of the node that concern all commands.
   struct Options {
     bool preempt_when_busy = false;
     std::string tf_prefix{};  ///< of the names of joints and frames
@@ -62,17 +72,25 @@ class CommandHost : public PluginHost {
     bool servers_on_demand = false;
   };
 
+  // For the driver
+
   CommandHost(rcl_cxx::Node & node, Robot & robot, const Options & options)
       : PluginHost(node, options.servers_on_demand), robot_(robot), options_(options)
   {
   }
 
+  // For plugins
+
   Robot & robot() { return robot_; }
+  /// Its `tf_prefix` is that of the names of joints and frames.
   const Options & options() const { return options_; }
   /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
   /// Robot::begin_stop(), after which no goal moves the arm that was received before.
   std::shared_future<Expected<StopReport>> begin_stop(const StopOptions & options, const Error & why);
+
+  // For the driver
+
   /// For a command that stops the program through the dashboard server: ends the script that runs or is about
   /// to run, and no goal moves the arm that was received before. The control program is not started in its
   /// place while the returned object exists.
@@ -116,18 +134,27 @@ class CommandHost : public PluginHost {
   std::map<std::string, CommandPlugin *> commands_;
 };
 
+/// What dashboard_server provides to its plugins: see DashboardPlugin::on_load().
 class DashboardHost : public PluginHost {
  public:
+  // For the driver
+
   /// `commands`: of the command server in this process; null if there is none.
   DashboardHost(rcl_cxx::Node & node, bool servers_on_demand, DashboardConnection & connection,
                 CommandHost * commands)
       : PluginHost(node, servers_on_demand), connection_(connection), commands_(commands)
   {
   }
+
+  // For plugins
+
   DashboardConnection & connection() { return connection_; }
   /// See ur_ros_rtde::has_dashboard_server().
   Status has_dashboard_server() const;
-  /// The same as of CommandHost.
+
+  // For the driver
+
+  /// The same as of CommandHost; without command_server, none and zero.
   std::shared_ptr<void> end_script(const Error & why) const
   {
     return commands_ != nullptr ? commands_->end_script(why) : nullptr;

@@ -31,10 +31,14 @@ class CommandPlugin;
 /// reason. From then on, calls through control() are rejected. Feedback is published during the waits.
 class Run {
  public:
+  // For the driver
+
   explicit Run(RunContext context);
   virtual ~Run() = default;
   Run(const Run &) = delete;
   Run & operator=(const Run &) = delete;
+
+  // Interfaces of ur_rtde
 
   /// The interfaces of ur_rtde, shared by all commands. `->` locks the interface for one call. The functions
   /// throw RobotError if the interface is not connected, or the goal must no longer move the arm; an
@@ -42,29 +46,29 @@ class Run {
   /// start motions asynchronously. A command without a lease of the arm, because of its
   /// resource or because it stops the arm, gets control_for_queries().
   Locked<ur_rtde::RTDEControlInterface> control();
+  Locked<ur_rtde::RTDEReceiveInterface> receive() const { return context_.robot.receive(); }
+  Locked<ur_rtde::RTDEIOInterface> io() const { return context_.robot.io(); }
+  Locked<ur_rtde::DashboardClient> dashboard() const { return context_.robot.dashboard(); }
   /// From any thread. Functions that start a motion or a mode, or end the control program, throw.
   Locked<ur_rtde::RTDEControlInterface> control_for_queries() const
   {
     return context_.robot.control_for_queries();
   }
-  Locked<ur_rtde::RTDEReceiveInterface> receive() const { return context_.robot.receive(); }
-  Locked<ur_rtde::RTDEIOInterface> io() const { return context_.robot.io(); }
-  Locked<ur_rtde::DashboardClient> dashboard() const { return context_.robot.dashboard(); }
-  /// The state of the robot.
-  const Robot & robot() const { return context_.robot; }
-  /// See Robot::set_watchdog().
-  Status set_watchdog(double frequency) { return context_.robot.set_watchdog(frequency); }
-  /// For commands with CommandTraits::preempts_all: waits until the arm is at rest and the preempted goals
-  /// have ended. The stop has begun before run().
-  Expected<StopReport> wait_for_stop();
+
+  // State of the robot
 
   /// The newest sample. Throws RobotError (link_lost) before the first.
   Sample state() const;
+  /// For results; NaN before the first sample.
   ur_ros_rtde_msgs::msg::ArmState arm_state() const;
   /// The force (N) and torque (Nm) that the environment exerts on the tool, at the TCP and in the orientation
   /// of the TCP. If the TCP offset has no rotation, which is common, that is the orientation of the flange,
   /// and [2] is the force along the flange's Z axis.
   Vector6 flange_force() const;
+  /// What else is known of the robot: its model and limits, the cycle time, the version.
+  const Robot & robot() const { return context_.robot; }
+
+  // Waits
 
   /// Why the goal has to end now. Empty: it may continue.
   std::optional<StopReason> stop_reason() const;
@@ -74,17 +78,17 @@ class Run {
   /// if it was not true in time.
   [[nodiscard]] std::optional<StopReason> until(const std::function<bool()> & condition,
                                                 std::chrono::nanoseconds timeout);
-
   /// Waits for an expected condition. `otherwise` is the failure if it is not true within `timeout`.
   [[nodiscard]] Outcome expect(const std::function<bool()> & condition, std::chrono::nanoseconds timeout,
                                const std::string & otherwise, ErrorCode code = ErrorCode::rejected_by_robot);
   /// Waits for the first sample newer than `sample` and stores it there. For loops at the controller's rate.
   [[nodiscard]] std::optional<StopReason> next(Sample & sample);
 
+  // Motions
+
   /// Repeats a check of the goal where the motion begins: a goal that was preempted, or force mode, has moved
   /// the arm since it was accepted.
   [[nodiscard]] Outcome check_again(const std::function<void(Check &)> & check);
-
   /// Waits until the asynchronous motion that the last call through control() has started has ended and the
   /// arm is at rest. Fails if the control program did not start it, or after `timeout`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
@@ -108,6 +112,11 @@ class Run {
   /// Waits for standstill, judged by actual joint velocities. Empty at standstill; otherwise `timeout`.
   [[nodiscard]] std::optional<StopReason> until_standstill(
       std::chrono::nanoseconds timeout = std::chrono::seconds(5));
+  /// Stops what this goal has started, by decelerating, and waits for standstill. Modes stay on; this goal
+  /// goes on.
+  [[nodiscard]] Outcome stop_motion(StopOptions options = {});
+
+  // Other commands, scripts and extensions
 
   /// Executes a goal of another command, named as its action ("move_l"), as a part of this one: it is
   /// checked, moves the arm with the right of this goal, and ends when this goal has to end. The feedback is
@@ -123,40 +132,44 @@ class Run {
     typename A::Result unused;
     return call<A>(command, goal, unused);
   }
-
-  /// Stops what this goal has started, by decelerating, and waits for standstill. Modes stay on; this goal
-  /// goes on.
-  [[nodiscard]] Outcome stop_motion(StopOptions options = {});
-
   /// Calls Robot::run_script, publishes feedback in the meantime, and stops the script when the goal has to
   /// stop. Requires Resource::script.
   ScriptReport run_script(const std::string & script, ScriptOptions options = {});
-
   /// For an Extension: the registers that its snippet reads and writes, and a function that runs the snippet
   /// and waits for its end, at most `timeout` s.
   Registers registers() const { return Registers(context_.robot); }
   [[nodiscard]] Outcome trigger(double timeout);
 
-  /// For a command without a lease that brings the arm into operation: calls `request`, which sends one
-  /// request and waits for the answer, unless the goal has to end or there was a stop; then throws RobotError
-  /// with the reason. A command that powers the arm off waits for the call, up to 2.5 s.
-  void unless_stopped(const std::function<void()> & request) const;
+  // Result and feedback
 
   /// Logs a warning for this goal and appends it to the message of the result.
   void warn(const std::string & text);
   /// `outcome` with the warnings in its message.
   Outcome with_warnings(const Outcome & outcome) const;
-
   /// Published as feedback, 0 to 1.
   void progress(double fraction) { progress_ = fraction; }
   double progress() const { return progress_; }
+  /// Since the start of the goal.
   std::chrono::nanoseconds elapsed() const { return std::chrono::steady_clock::now() - begin_; }
+  /// The field `motion` of the feedback; empty before the first sample.
+  std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
+
+  // Stops and other special commands
+
+  /// For commands with CommandTraits::preempts_all: waits until the arm is at rest and the preempted goals
+  /// have ended. The stop has begun before run().
+  Expected<StopReport> wait_for_stop();
   /// The goal that this one preempted: "/move_j, goal 3f0c12ab". Empty if there was none. For commands with
   /// CommandTraits::preempts_all.
   const std::string & preempted_goal() const { return context_.preempted_goal; }
+  /// See Robot::set_watchdog().
+  Status set_watchdog(double frequency) { return context_.robot.set_watchdog(frequency); }
+  /// For a command without a lease that brings the arm into operation: calls `request`, which sends one
+  /// request and waits for the answer, unless the goal has to end or there was a stop; then throws RobotError
+  /// with the reason. A command that powers the arm off waits for the call, up to 2.5 s.
+  void unless_stopped(const std::function<void()> & request) const;
 
-  /// Empty before the first sample.
-  std::optional<ur_ros_rtde_msgs::msg::MotionFeedback> motion_feedback() const;
+  // Streams that brake by themselves
 
   /// While it exists, the command streams setpoints that it can brake by itself, within its own limits: a
   /// request to end the goal does not stop the arm at once. It has to begin to brake within 10 ms, and report

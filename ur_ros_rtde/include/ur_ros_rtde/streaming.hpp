@@ -9,6 +9,7 @@
 
 namespace ur_ros_rtde {
 
+/// How the arm follows a TargetStream, and when the stream ends.
 struct StreamOptions {
   double timeout = 0.1;  ///< s without a target that end the stream
   double max_joint_jump =
@@ -19,6 +20,7 @@ struct StreamOptions {
   double lookahead_time = 0.1;   ///< s, servo control
   double gain = 300.0;           ///< servo control
 
+  /// For Run::stop_motion(), with `deceleration`.
   StopOptions stop_options() const
   {
     StopOptions options;

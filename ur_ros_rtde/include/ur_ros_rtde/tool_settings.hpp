@@ -29,6 +29,8 @@ std::vector<double> to_ur_center_of_gravity(const Vector3 & center_of_gravity);
 /// A setting that lasts as long as this object exists. Its destructor waits until the arm is at rest and puts
 /// the setting before back, also after a cancel or if the new one was not confirmed; a failure is a warning
 /// of the goal.
+///
+///     const TemporarySetting payload = temporary_payload(run, 2.0, {0.0, 0.0, 0.05});
 class [[nodiscard]] TemporarySetting {
  public:
   using PutBack = std::function<bool(ur_rtde::RTDEControlInterface &)>;

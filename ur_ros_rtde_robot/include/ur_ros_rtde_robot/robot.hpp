@@ -34,15 +34,22 @@ class RTDEReceiveInterface;
 
 namespace ur_ros_rtde {
 
+// For the driver
+
 /// The reason for holders that are stopped by Robot::stop_motion().
 Error stopped_by_the_driver();
 
-/// One robot. Connects ur_rtde's four interfaces in the background, in any power-up order, and reconnects
-/// them after a reboot, a pulled cable or a stopped program. Provides the functions that commands share:
-/// locking, motion tracking, stopping and arbitration. All methods are thread-safe. The destructor stops the
-/// current motion, ends the control program and joins all threads.
+// For plugins
+
+/// One robot: its connections, its control program, and who may use it. Connects ur_rtde's four interfaces in
+/// the background, in any power-up order, and reconnects them after a reboot, a pulled cable or a stopped
+/// program. Provides the functions that commands share: locking, motion tracking, stopping and arbitration.
+/// All methods are thread-safe. The destructor stops the current motion, ends the control program and joins
+/// all threads.
 class Robot {
  public:
+  // For the driver
+
   /// Throws std::invalid_argument if an option is out of range. Network problems do not throw.
   explicit Robot(RobotOptions options, LogFunction log = {});
   ~Robot();
@@ -59,12 +66,16 @@ class Robot {
   /// Starts the control program as soon as possible.
   void start();
 
+  // Status and model
+
   RobotStatus status() const;
   /// The connection that brings the samples.
   LinkStatus link() const;
   /// Success if the robot accepts motion commands; else cause and message of the status.
   Status ready_to_move() const;
+  /// The same; waits for it, at most for `timeout`.
   Status wait_until_ready(std::chrono::milliseconds timeout, std::stop_token stop = {}) const;
+  /// Of the controller; none while it is unknown.
   std::optional<ControllerVersion> version() const;
   /// s, of the control cycle. 0.002 while the version is unknown.
   double cycle_time() const;
@@ -77,7 +88,10 @@ class Robot {
   std::optional<kinematics::DhRows> calibration() const;
   /// Of the controller: RobotOptions::address.
   const std::string & address() const;
+  /// See RobotOptions::realtime_priority.
   int realtime_priority() const;
+
+  // Leases
 
   /// Who may use the robot. A claim that moves the arm is granted if the robot is ready, no stop is under
   /// way, nobody guides the arm by hand, and no other holder is in the way.
@@ -111,25 +125,31 @@ class Robot {
   /// The same, and no stop has taken the arm out of the hands of the holder.
   Status may_continue(const Lease & lease) const;
 
+  // Interfaces of ur_rtde
+
   /// ur_rtde's interfaces. Throw RobotError (not_ready, link_lost, protective_stop, …) if the interface is
   /// unavailable. The calls of a holder that may not go on throw RobotError with the reason.
   Locked<ur_rtde::RTDEControlInterface> control(const Lease & lease);
-  /// For callers without a lease: functions that start a motion or a mode, or end the program, throw
-  /// std::logic_error.
-  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const;
   Locked<ur_rtde::RTDEReceiveInterface> receive() const;
   Locked<ur_rtde::RTDEIOInterface> io() const;
   Locked<ur_rtde::DashboardClient> dashboard() const;
+  /// For callers without a lease: functions that start a motion or a mode, or end the program, throw
+  /// std::logic_error.
+  Locked<ur_rtde::RTDEControlInterface> control_for_queries() const;
 
   /// Sends a line to the dashboard server and returns its answer without the line end. Uses a separate
   /// connection, since the robot may have closed a persistent one.
   Expected<std::string> query_dashboard(const std::string & line, std::chrono::milliseconds timeout,
                                         const std::stop_token & stop = {}) const;
 
+  // Samples
+
   /// The newest sample; none before the first.
   std::optional<Sample> latest() const;
   /// See StateReceiver::wait_for_next(). motion_progress() and is_moving() then include this sample.
   bool wait_for_next(Sample & last, std::chrono::milliseconds timeout, std::stop_token stop = {}) const;
+
+  // Motions
 
   /// Success if a motion can continue now; else the reason why not: a safety stop, a stopped program, a lost
   /// connection. Evaluates the newest package, so it may be ahead of status().
@@ -150,6 +170,8 @@ class Robot {
   /// min_watchdog_frequency to max_watchdog_frequency). A restarted control program uses
   /// RobotOptions::watchdog_frequency again.
   Status set_watchdog(double frequency);
+
+  // Stops
 
   /// Stops the arm: takes it out of the hands of all holders, who are told `why`,
   /// decelerates, and waits for standstill, determined from the actual joint velocities. If the control
@@ -194,6 +216,8 @@ class Robot {
    private:
     std::shared_ptr<Permit> permit_;
   };
+
+  // Scripts and extensions
 
   /// Sends `script` to the controller and waits until it has ended. `script` is a complete program
   /// (`def … end`, or `sec … end` for a secondary one) or a function body, which is wrapped in a function. If

@@ -6,6 +6,7 @@
 
 namespace ur_ros_rtde {
 
+/// Whether the robot accepts motion commands.
 enum class RobotState {
   disconnected,  ///< no controller at the address
   connecting,    ///< controller found; interfaces and control program are being set up
@@ -15,6 +16,7 @@ enum class RobotState {
 
 const char * to_string(RobotState state);
 
+/// The state of the connection to the robot and of its control program, with the cause of a problem.
 struct RobotStatus {
   RobotState state = RobotState::disconnected;
   ErrorCode cause = ErrorCode::none;

@@ -37,7 +37,7 @@ enum class ErrorCode : std::uint16_t {
 /// Name of the enumerator; "unknown" for a value outside the enumeration.
 const char * to_string(ErrorCode code);
 
-/// `message` names the field or component, its value, the limit and the remedy.
+/// Why something failed: `message` names the field or component, its value, the limit and the remedy.
 struct Error {
   ErrorCode code = ErrorCode::none;
   std::string message;
@@ -53,8 +53,10 @@ class [[nodiscard]] Expected : public tl::expected<T, Error> {
   Expected(tl::expected<T, Error> && other) : tl::expected<T, Error>(std::move(other)) {}
 };
 
+/// Success, or the Error.
 using Status = Expected<void>;
 
+/// An Error for functions that return Expected or Status.
 inline tl::unexpected<Error> failure(ErrorCode code, std::string message)
 {
   return tl::unexpected<Error>(Error{code, std::move(message)});

@@ -17,6 +17,9 @@ class DashboardClient;
 
 namespace ur_ros_rtde {
 
+// For the driver
+
+/// Address and times of a DashboardConnection.
 struct DashboardConnectionOptions {
   std::string address;
   std::chrono::milliseconds connect_timeout{500};
@@ -25,9 +28,13 @@ struct DashboardConnectionOptions {
   std::chrono::milliseconds heartbeat{1000};
 };
 
+// For plugins
+
 /// A connection to the dashboard server that reconnects by itself. All methods are thread-safe.
 class DashboardConnection {
  public:
+  // For the driver
+
   /// Throws std::invalid_argument for an empty address. Network problems do not throw.
   explicit DashboardConnection(DashboardConnectionOptions options, LogFunction log = {});
   ~DashboardConnection();
@@ -37,10 +44,13 @@ class DashboardConnection {
   /// Called on the background thread when the connection is established or lost. Must not throw. Set before
   /// start().
   void on_link(std::function<void(const LinkStatus &)> function);
+  /// Connects in the background.
   void start();
   /// Joins the background thread; no callback runs afterwards. Takes at most as long as one
   /// connection attempt. Called by the destructor.
   void stop();
+
+  // For plugins
 
   LinkStatus link() const;
   /// Updated with each heartbeat. None if unknown or if the controller has no such setting (before PolyScope

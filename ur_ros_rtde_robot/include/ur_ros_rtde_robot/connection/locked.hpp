@@ -13,6 +13,8 @@
 
 namespace ur_ros_rtde {
 
+// For the driver
+
 /// A recursive mutex with timeout that is granted in order of request, so that a thread which locks it in a
 /// loop does not starve others. (std::recursive_timed_mutex uses pthread_mutex_clocklock, which the
 /// ThreadSanitizer of the supported compilers does not know.)
@@ -22,6 +24,7 @@ class InterfaceLock {
 
   /// False if another thread still holds the lock after `timeout`.
   [[nodiscard]] bool try_lock_for(std::chrono::milliseconds timeout, Place place = Place::last);
+  /// Once for each successful try_lock_for().
   void unlock();
 
  private:
@@ -40,6 +43,8 @@ HeldLock held(InterfaceLock * lock);
 HeldLock acquire(InterfaceLock & lock, const char * what, std::chrono::milliseconds timeout,
                  InterfaceLock::Place place = InterfaceLock::Place::last);
 
+// For plugins
+
 /// Thread-safe access to one of ur_rtde's interfaces, which are not thread-safe themselves. `operator->`
 /// holds the interface's lock for one call (execute-around pointer): `robot.control(lease)->moveL(pose,
 /// speed, acceleration, true);` A call throws RobotError (busy) if the call of another thread is still
@@ -53,6 +58,7 @@ class Locked {
   /// kept for as long as the call lasts, which must end before the robot.
   using Permission = std::function<Expected<std::shared_ptr<void>>()>;
 
+  /// One call, or several during its lifetime: holds the lock.
   class Call {
    public:
     Call(const Locked & locked)

@@ -38,6 +38,7 @@ struct Generation {
   bool operator==(const Generation &) const = default;
 };
 
+/// What a goal asks for with Robot::acquire().
 struct Claim {
   Resource resource = Resource::motion;
   std::string owner;  ///< name shown to users: "move_l"

@@ -17,6 +17,7 @@ struct MotionMark {
   std::uint32_t program = 0;  ///< number of robot programs that have ended
 };
 
+/// What has happened to a motion since a MotionMark.
 struct MotionProgress {
   bool started = false;        ///< an asynchronous operation has begun since the mark; it may have ended
   bool running = false;        ///< the asynchronous operation is running
@@ -25,6 +26,7 @@ struct MotionProgress {
   unsigned progress = 0;       ///< index of the current waypoint of a path
   /// At rest or not, which it is not if force mode moves the arm.
   bool ended() const { return started && !running && !program_ended; }
+  /// The same, and at rest.
   bool finished() const { return ended() && at_rest; }
 };
 
@@ -40,6 +42,7 @@ enum class StopMeans {
 
 const char * to_string(StopMeans means);
 
+/// How the arm is stopped.
 struct StopOptions {
   /// rad/s^2 for motions in joint space (stopj), m/s^2 for others (stopl); useful range: 0.5 to 10.
   double joint_deceleration = 2.0;
@@ -54,11 +57,14 @@ struct StopOptions {
   bool operator==(const StopOptions &) const = default;
 };
 
+/// How the arm was stopped.
 struct StopReport {
   StopMeans means = StopMeans::nothing_moved;
   /// s, controller time from the request to standstill.
   double time_to_standstill = 0.0;
 };
+
+// For the driver
 
 /// Detects standstill from the actual joint velocities of consecutive samples.
 class StandstillDetector {

@@ -11,6 +11,7 @@
 
 namespace ur_ros_rtde {
 
+/// How the controller runs a script.
 enum class ScriptKind {
   /// `def name(): … end`. Replaces the control program while it runs; may move the arm.
   program,
@@ -33,6 +34,7 @@ enum class ScriptEnd {
 
 const char * to_string(ScriptEnd end);
 
+/// How a script is run, and for how long.
 struct ScriptOptions {
   ScriptKind kind = ScriptKind::program;
   /// Time from sending the script to its end: at least 1 ms; at most 10 s for a secondary program.
@@ -50,6 +52,7 @@ struct ScriptOptions {
   std::function<void(const std::string & text)> on_text;
 };
 
+/// What a script has written, and how it ended.
 struct ScriptReport {
   ScriptEnd end = ScriptEnd::rejected;
   /// ErrorCode::none if the script finished. A compile or run-time error is rejected_by_robot, with line and

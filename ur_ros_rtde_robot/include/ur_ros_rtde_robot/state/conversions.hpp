@@ -47,6 +47,7 @@ Vector3 rotate_back(const Vector3 & rotation_vector, const Vector3 & v);
 
 /// T_a T_b: transforms `b` from frame `a` to the parent frame of `a` (URScript's pose_trans).
 Vector6 pose_trans(const Vector6 & a, const Vector6 & b);
+/// From the parent frame of `pose` to its frame.
 Vector6 pose_inverse(const Vector6 & pose);
 
 /// The wrench at the TCP, from that at the flange. Both in the orientation of the frame in which `tcp` is

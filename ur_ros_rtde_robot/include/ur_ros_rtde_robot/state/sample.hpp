@@ -164,6 +164,7 @@ struct Sample {
   {
     return std::clamp(std::fmin(speed_scaling, target_speed_fraction), 0.0, 1.0);
   }
+  /// A program of the robot plays, of the driver or another one.
   bool is_program_running() const { return runtime_state == RuntimeState::playing; }
 };
 
