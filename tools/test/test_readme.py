@@ -1,11 +1,13 @@
 """Links and commands on the pages are valid. The tests of ur_ros_rtde_tutorials run the examples of the README."""
 
+import argparse
 import importlib
 import itertools
 import re
 import shlex
 import subprocess
 
+import pytest
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, COMMANDS, VIEW, _parse_arguments
 from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
 from ur_ros_rtde_viewer import program as program_of_viewer
@@ -69,17 +71,35 @@ def test_every_command_of_ur_is_known():
     assert not unknown
 
 
+def words_of(text):
+    """Yields the words of each command of `ur` and `./ur`, also of one after a variable, `docker compose run …` or `$(`."""
+    for command in re.findall(r'(?<![\w.`/#-])((?:\./)?ur -?[a-z](?:"[^"]*"|[^"\n)])*)', re.sub(r"(^|\s)# .*", r"\1", text)):
+        words = shlex.split(command, comments=True)
+        yield list(itertools.takewhile(lambda word: word not in (">", "|", "||", "&", "&&"), words))
+
+
 def command_lines():
-    """Yields page and words of each command line of `ur` and `./ur` in a code block."""
+    """Yields page and words of each command in a code block."""
     for page, text in PAGES.items():
-        for block in re.findall(r"```\w*\n(.*?)```", text, re.S):
-            for line in re.findall(r'^ *((?:\./)?ur [a-z](?:"[^"]*"|[^"\n])*)', block.replace("\\\n", " "), re.M):
-                words = shlex.split(line, comments=True)
-                yield page.relative_to(ROOT), list(itertools.takewhile(lambda word: word not in (">", "|", "||", "&", "&&"), words))
+        for language, block in re.findall(r"^ *```(\w*)\n(.*?)^ *```", text, re.M | re.S):
+            if language in ("", "bash", "text"):
+                yield from ((page.relative_to(ROOT), words) for words in words_of(block.replace("\\\n", " ")))
+
+
+def commands_in_sentences():
+    """Yields page and words of each command in code within a sentence, which may lack arguments."""
+    for page, text in PAGES.items():
+        for code in re.findall(r"`([^`]+)`", re.sub(r"```.*?```", "", text, flags=re.S)):
+            if re.match(r"(?:\w+=\S+ )?(?:\./)?ur ", code):
+                yield from ((page.relative_to(ROOT), words) for words in words_of(" ".join(code.split())))
+
+
+class WrongArguments(Exception):
+    """What a parser says, and the parser."""
 
 
 def parse(command, *arguments):
-    """Exits with wrong arguments, as the program does."""
+    """Raises WrongArguments where the program would exit."""
     if command == VIEW:
         program_of_viewer.parse(arguments)
     elif command in COMMANDS and (command, arguments) != ("doctor", ()):
@@ -90,14 +110,58 @@ def parse(command, *arguments):
             importlib.import_module(f"ur_tools.{command.replace('-', '_')}").parse(main._forwarded(options))
 
 
-def test_the_arguments_of_every_command_line_of_ur_are_known(capsys):
-    lines, wrong = list(command_lines()), []
-    for page, words in lines:
+@pytest.fixture
+def problem_of(monkeypatch):
+    """Returns a function that says what is wrong with a command; None if nothing is. A command in a sentence may lack arguments, and have
+    placeholders: FILE, …"""
+    def fail(parser, message):
+        raise WrongArguments(message, parser)
+
+    monkeypatch.setattr(argparse.ArgumentParser, "error", fail)
+
+    def problem(words, in_sentence=False):
+        options = [word.partition("=")[0] for word in words if word.startswith("-")]
+        if words[1] in ("--help", "--version"):
+            return None
         try:
-            parse(*words[1:])
-        except SystemExit:
-            wrong.append(f"{page}: {shlex.join(words)}")
-    assert len(lines) > 100 and not wrong, "\n".join([*wrong, capsys.readouterr().err])
+            parse(*[word for word in words[1:] if word != "--help"])
+        except WrongArguments as wrong:
+            message, parser = wrong.args
+            is_incomplete = re.search(r"required: |expected (?:one|at least one) argument|: '?(?:[A-Z]+\b|…)", message)
+            is_known = all(option in (*parser._option_string_actions, "--help") for option in options)
+            return None if in_sentence and is_incomplete and is_known else message
+        return None
+
+    return problem
+
+
+def test_the_arguments_of_every_command_line_of_ur_are_known(problem_of):
+    lines = list(command_lines())
+    wrong = {f"{page}: {shlex.join(words)}: {problem}" for page, words in lines if (problem := problem_of(words))}
+    assert len(lines) > 100 and not wrong, "\n".join(wrong)
+
+
+def test_the_arguments_of_every_command_of_ur_in_a_sentence_are_known(problem_of):
+    lines = list(commands_in_sentences())
+    wrong = {f"{page}: {shlex.join(words)}: {problem}" for page, words in lines if (problem := problem_of(words, in_sentence=True))}
+    assert len(lines) > 80 and not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("line", [
+    "ur call move_j --shwo", "ur calls move_j", "  ./ur test --chnaged", "ur state --namespace", "DOMAIN=1 ./ur demo --adress 127.0.0.2",
+    "docker compose run --rm driver ur state --wrong", 'eval "$(ur completion fish)"', "ur view --wrong", "./ur bench --wrong",
+    "(cd new && ./ur bench --wrong)"])
+def test_a_wrong_command_line_is_found(problem_of, line):
+    (words,) = words_of(line)
+    assert problem_of(words)
+
+
+@pytest.mark.parametrize("line, is_right", [
+    ("ur doctor --robot", True), ("ur doctor --robt", False), ("ur call", True), ("ur call --shwo", False), ("ur new KIND NAME", True),
+    ("ur new commands wag", False), ("./ur shell --ros kilted", True), ("./ur shell --ros kiltd", False), ("ur view --help", True)])
+def test_a_command_in_a_sentence_may_lack_arguments_but_not_have_wrong_ones(problem_of, line, is_right):
+    (words,) = words_of(line)
+    assert (problem_of(words, in_sentence=True) is None) == is_right
 
 
 def test_the_names_in_the_examples_of_ur_test_select_tests():
