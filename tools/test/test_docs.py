@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 from error_texts import error_texts
+from ur_ros_rtde_launch import launch_arguments
 from ur_ros_rtde_launch.launch_arguments import PARAMETERS
 from ur_tools import console, docs, docs_commands, docs_reference
 from ur_tools.layout import ROOT
@@ -162,6 +163,25 @@ def test_the_tables_of_parameters_match_the_launch_arguments():
             assert (plain(second), third) == (argument.default, "{:g} to {:g}".format(*argument.limits)), argument.name
         else:
             assert plain(third) == argument.default, argument.name
+
+
+def test_the_names_in_migration_exist():
+    """Those of this driver: actions and the fields of their goals, topics, services, parameters and launch files."""
+    actions = {command.name: (ROOT / command.type).with_suffix(".action")
+               for page in (ROOT / "docs" / "use" / "commands").glob("*.md") for command in docs_commands.of_page(page.read_text())}
+    arguments = {argument.name for argument in (*PARAMETERS, *launch_arguments.OPTIONS, *launch_arguments.MOVEIT)}
+    served = {name.lstrip("/") for name, _, _ in docs_reference.endpoints()}
+    known = {*actions, *served, *arguments, *(path.name for path in ROOT.glob("*/launch/*.launch.py"))}
+    page = (ROOT / "docs" / "use" / "migration.md").read_text().replace("\n### Plugins and extensions\n", "\n### (")
+    rows = [line.strip("|").split("|") for table in page.split("\n### ") if not table.startswith("(")
+            for line in table.splitlines() if line.startswith("| `")]
+    names = [re.findall(r"`([\w./]+)(?::=\w+)?`", cells[1]) for cells in rows]
+    assert len(rows) > 80 and {name for row in names for name in row} - known == set()
+    for cells, row in zip(rows, names):
+        files = [actions[name] for name in row if name in actions and actions[name].is_file()]
+        fields = set(re.findall(r"^\S+ (\w+)", "".join(file.read_text().split("---")[0] for file in files), re.M))
+        if re.match(r" `[A-Z]", cells[0]):
+            assert set(re.findall(r"`(\w+)`", " ".join(cells[2:]))) - fields - served == set(), row
 
 
 def test_a_dead_link_is_an_error(site, tmp_path, capfd):
