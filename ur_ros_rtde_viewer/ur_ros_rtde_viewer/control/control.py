@@ -5,7 +5,8 @@ import threading
 import time
 from typing import Any, Callable, Dict, List
 
-from ..page import style
+from ..page import style, uploads
+from ..page.scripts import NOTICES, script
 from ..panels.state_panel import StatePanel
 from .control_node import ControlNode
 from .form_panel import FormPanel
@@ -21,17 +22,15 @@ STOP_REPEAT = 2.0  # Hz, while the button is held
 STOP_WIDTH = 220  # pixels; viser makes no panel narrower
 STOP_KEY: Any = "escape"
 EXPAND_PERIOD = 1.0  # s
-# viser ignores hotkeys while an input has the focus, and does not run scripts in its HTML, but event handlers. Esc in an input
-# leaves it and is pressed again outside.
-ESCAPE_IN_INPUTS = """<img src="data:," alt="" style="display: none" onerror="if (!window.escapeInInputs) {
-  window.escapeInInputs = true;
-  document.addEventListener('keydown', event => {
-    if (event.key === 'Escape' && event.target.matches('input, textarea, select, [contenteditable]')) {
-      event.target.blur();
-      document.body.dispatchEvent(new KeyboardEvent('keydown', {key: 'Escape', code: 'Escape', bubbles: true}));
-    }
-  }, true);
-}">"""
+# viser ignores hotkeys while an input has the focus. Esc in an input leaves it and is pressed again outside.
+ESCAPE_IN_INPUTS = script("escapeInInputs", """
+document.addEventListener('keydown', event => {
+  if (event.key === 'Escape' && event.target.matches('input, textarea, select, [contenteditable]')) {
+    event.target.blur();
+    document.body.dispatchEvent(new KeyboardEvent('keydown', {key: 'Escape', code: 'Escape', bubbles: true}));
+  }
+}, true);
+""")
 
 
 class Control:
@@ -59,7 +58,7 @@ class Control:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
-            gui.add_html(style.STOP + ESCAPE_IN_INPUTS)
+            gui.add_html(style.STOP + NOTICES + ESCAPE_IN_INPUTS + uploads.LIMIT)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
         self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)

@@ -3,6 +3,7 @@
 from typing import Any, Hashable
 
 from ..page import style
+from ..page.scripts import script
 from ..page.sliders import within_limits
 from .jog import AXES, HOLD_RATE, MAX_ANGULAR, MAX_LINEAR, Frame, JogSpeed
 from .robot_control import RobotControl
@@ -10,10 +11,9 @@ from .robot_control import RobotControl
 COLORS = ("pink", "green", "blue")  # of x, y and z, as in the scene; STOP is red
 FRAMES = {"base": Frame.BASE, "tool": Frame.TOOL}
 # The release of a button is its click. A touch that is long, or that the browser cancels, ends without one.
-CLICK_AFTER_TOUCH = """<img src="data:," alt="" style="display: none" onerror="if (!window.clickAfterTouch) {
-  window.clickAfterTouch = true;
-  document.addEventListener('lostpointercapture', event => event.target.closest?.('div:has(> .two-columns) ~ div > button')?.click());
-}">"""
+CLICK_AFTER_TOUCH = script("clickAfterTouch", """
+document.addEventListener('lostpointercapture', event => event.target.closest?.('div:has(> .two-columns) ~ div > button')?.click());
+""")
 
 
 class JogPanel:
