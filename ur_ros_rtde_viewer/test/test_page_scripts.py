@@ -1,11 +1,16 @@
-"""Scripts of the page with --control in a headless Chromium, without a robot: uploads."""
+"""Scripts of the page with --control in a headless Chromium, without a robot: uploads, lost connections."""
+
+import contextlib
 
 import pytest
-from running_viewer import RunningViewer, Tab, until
+from freezing_proxy import FreezingProxy
+from running_viewer import COARSE, RunningViewer, Tab, until
 from ur_ros_rtde_viewer.page import uploads
+from ur_ros_rtde_viewer.page.heartbeat import ANSWER_TIMEOUT, LOSS_TIMEOUT, NO_ANSWER, NO_CONNECTION
 from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
 
 BROWSER = True
+MEASURES_TIME = True
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +40,66 @@ def test_a_large_file_is_not_uploaded_where_there_is_stop(tab, viewer):
     until(lambda: "Reading" not in replay.message.content, "the end of reading")
     assert replay.message.content.startswith("small.csv has no columns")
     tab.page.get_by_text("Where there is STOP").wait_for(state="hidden")
+
+
+@pytest.fixture(scope="module")
+def proxy(viewer):
+    with contextlib.closing(FreezingProxy(viewer.port)) as proxy:
+        yield proxy
+
+
+@pytest.fixture(scope="module")
+def remote_tab(browser, proxy):
+    """A page whose connection can freeze."""
+    return Tab(browser, f"http://127.0.0.1:{proxy.port}/{COARSE}")
+
+
+def wait_until_hidden(tab, text):
+    tab.page.get_by_text(text).wait_for(state="hidden")
+
+
+NOTE_NOTICES = """() => {
+  const show = window.showNotice
+  window.notices = []
+  window.showNotice = (name, text) => {
+    if (text) window.notices.push(text)
+    show(name, text)
+  }
+}"""
+
+
+def test_no_notice_is_shown_while_the_viewer_answers(tab):
+    tab.page.evaluate(NOTE_NOTICES)
+    tab.button("STOP").click()
+    tab.page.keyboard.press("Escape")
+    tab.page.wait_for_timeout(1e3 * (LOSS_TIMEOUT + ANSWER_TIMEOUT))
+    assert tab.page.evaluate("window.notices") == []
+
+
+def test_a_connection_that_is_lost_without_a_message_is_reported(remote_tab, proxy):
+    proxy.freeze()
+    remote_tab.wait_for_text(NO_CONNECTION)
+    assert remote_tab.button("STOP").is_enabled()  # the browser does not know
+    proxy.thaw()
+    wait_until_hidden(remote_tab, NO_CONNECTION)
+
+
+def test_a_tab_in_the_background_reports_a_lost_connection_when_it_is_shown(remote_tab, proxy):
+    remote_tab.page.evaluate("Object.defineProperty(document, 'hidden', {value: true, configurable: true})")
+    proxy.freeze()
+    remote_tab.page.wait_for_timeout(2e3 * LOSS_TIMEOUT)
+    assert not remote_tab.page.get_by_text(NO_CONNECTION).is_visible()
+    remote_tab.page.evaluate("delete document.hidden")
+    remote_tab.wait_for_text(NO_CONNECTION)
+    proxy.thaw()
+    wait_until_hidden(remote_tab, NO_CONNECTION)
+
+
+@pytest.mark.parametrize("press", [lambda tab: tab.button("STOP").click(), lambda tab: tab.page.keyboard.press("Escape")],
+                         ids=["button", "key"])
+def test_a_stop_that_is_not_answered_is_reported(remote_tab, proxy, press):
+    proxy.to_server.clear()
+    press(remote_tab)
+    remote_tab.wait_for_text(NO_ANSWER)
+    proxy.to_server.set()
+    wait_until_hidden(remote_tab, NO_ANSWER)

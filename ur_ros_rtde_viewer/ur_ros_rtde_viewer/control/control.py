@@ -5,8 +5,9 @@ import threading
 import time
 from typing import Any, Callable, Dict, List
 
-from ..page import style, uploads
-from ..page.scripts import NOTICES, script
+from ..page import heartbeat, style, uploads
+from ..page.heartbeat import Heartbeat
+from ..page.scripts import script
 from ..panels.state_panel import StatePanel
 from .control_node import ControlNode
 from .form_panel import FormPanel
@@ -49,6 +50,8 @@ class Control:
         for robot in self._robots:
             slider = next(panel.speed_slider for panel in robot.view.panels if isinstance(panel, StatePanel))
             robot.view.panels += [robot, SpeedControl(slider, robot.goals)]
+        self._heartbeat = Heartbeat(viewer.server.gui)
+        self._node.node.create_timer(heartbeat.PERIOD, self._heartbeat.beat)
         self._node.start()
         self._add_stop(viewer.server.gui)
         viewer.server.on_client_connect(self._connect)
@@ -58,7 +61,7 @@ class Control:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
-            gui.add_html(style.STOP + NOTICES + ESCAPE_IN_INPUTS + uploads.LIMIT)
+            gui.add_html(style.STOP + ESCAPE_IN_INPUTS + uploads.LIMIT)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
         self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)
@@ -82,6 +85,7 @@ class Control:
         for robot in self._robots:
             name = f"{robot.view.options.name}: " if len(self._robots) > 1 else ""
             robot.stop(functools.partial(self._show_outcome, name))
+        self._node.post(self._heartbeat.answer_stop)
 
     def _show_outcome(self, name: str, outcome: Outcome, text: str) -> None:
         """Shows the last outcome of each robot: the success of one does not hide the failure of another."""

@@ -7,6 +7,7 @@ from viser._messages import GuiSetPanelCollapsedMessage
 
 from ..arguments import RobotOptions
 from . import style
+from .scripts import NOTICES
 
 PLOTS_WIDTH, PANEL_WIDTH = 370, 400  # pixels; the six tabs of a robot fit into one row
 NARROW = 0.45  # width of the scene by its height
@@ -22,7 +23,7 @@ class Layout:
         gui = server.gui
         gui.main_panel.dock_right()
         gui.main_panel.set_width(PANEL_WIDTH)
-        gui.add_html(style.PAGE)
+        gui.add_html(style.PAGE + NOTICES)
         self._banners: Dict[str, Any] = {robot.namespace: gui.add_html("", visible=False) for robot in robots}
         self._plots = gui.add_panel()
         self._plots.dock_left()

@@ -10,6 +10,8 @@ OPEN = ':root:not(:has([style*="display: none"] .page-style))'  # the sheet
 SHEET_TITLE = '.mantine-Paper-root [style*="width: 20em"]:has(.stop-style) > div:first-child'
 SCENE = ".mantine-Notifications-root ~ div:not(.mantine-Paper-root):has(canvas)"
 
+STOP_BUTTON = "div:has(> .stop-style) + div button"
+
 # Notifications are at the top left of the scene, STOP at its bottom right.
 PAGE = f"""<style>
 .mantine-Notifications-root {{max-height: calc(100% - 14em); overflow: hidden}}
@@ -24,11 +26,11 @@ PAGE = f"""<style>
 
 # The button after this element, and on a phone all elements of its panel.
 STOP = f"""<style>
-div:has(> .stop-style) + div button {{height: 72px !important; font-size: 30px; font-weight: 700; touch-action: none}}
+{STOP_BUTTON} {{height: 72px !important; font-size: 30px; font-weight: 700; touch-action: none}}
 {PHONE} {{
   div:has(> div > .stop-style) {{position: fixed; top: 0; left: 0; right: 0; height: {STOP_HEIGHT}; box-sizing: border-box;
                                  padding-top: 0.5em; background: var(--mantine-color-body)}}
-  div:has(> .stop-style) + div button {{height: 52px !important}}
+  {STOP_BUTTON} {{height: 52px !important}}
   {SHEET_TITLE} {{pointer-events: none}}
   {SHEET_TITLE} button {{pointer-events: auto}}
   .mantine-Tabs-root:has(.stop-style) > [role=button] {{display: none !important}}
