@@ -5,7 +5,7 @@ import threading
 import time
 from typing import Any, Callable, Dict, List
 
-from ..page import heartbeat, style, uploads
+from ..page import edits, heartbeat, style, uploads
 from ..page.heartbeat import Heartbeat
 from ..page.scripts import script
 from ..panels.state_panel import StatePanel
@@ -61,7 +61,7 @@ class Control:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
-            gui.add_html(style.STOP + ESCAPE_IN_INPUTS + uploads.LIMIT)
+            gui.add_html(style.STOP + ESCAPE_IN_INPUTS + uploads.LIMIT + edits.CLICKS_AFTER_EDITS)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
         self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)

@@ -11,8 +11,8 @@ from .robot_control import RobotControl
 COLORS = ("pink", "green", "blue")  # of x, y and z, as in the scene; STOP is red
 FRAMES = {"base": Frame.BASE, "tool": Frame.TOOL}
 # The release of a button is its click. A touch that is long, or that the browser cancels, ends without one.
-CLICK_AFTER_TOUCH = script("clickAfterTouch", """
-document.addEventListener('lostpointercapture', event => event.target.closest?.('div:has(> .two-columns) ~ div > button')?.click());
+CLICK_AFTER_TOUCH = script("clickAfterTouch", f"""
+document.addEventListener('lostpointercapture', event => event.target.closest?.('{style.JOG_BUTTONS}')?.click());
 """)
 
 

@@ -11,6 +11,7 @@ SHEET_TITLE = '.mantine-Paper-root [style*="width: 20em"]:has(.stop-style) > div
 SCENE = ".mantine-Notifications-root ~ div:not(.mantine-Paper-root):has(canvas)"
 
 STOP_BUTTON = "div:has(> .stop-style) + div button"
+JOG_BUTTONS = "div:has(> .two-columns) ~ div > button"
 
 # Notifications are at the top left of the scene, STOP at its bottom right.
 PAGE = f"""<style>
@@ -40,7 +41,7 @@ STOP = f"""<style>
 </style><div class="stop-style"></div>"""
 
 # The buttons after this element. A finger that moves on one of them neither scrolls nor zooms the page, which would end its touch.
-TWO_COLUMNS = """<style>
-div:has(> .two-columns) ~ div:has(> button) {display: inline-block; width: calc(50% - 2 * var(--mantine-spacing-xs))}
-div:has(> .two-columns) ~ div > button {touch-action: none; -webkit-touch-callout: none}
+TWO_COLUMNS = f"""<style>
+div:has(> .two-columns) ~ div:has(> button) {{display: inline-block; width: calc(50% - 2 * var(--mantine-spacing-xs))}}
+{JOG_BUTTONS} {{touch-action: none; -webkit-touch-callout: none}}
 </style><div class="two-columns"></div>"""
