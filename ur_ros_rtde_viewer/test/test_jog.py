@@ -39,6 +39,10 @@ def test_a_held_button_moves_the_arm_from_its_second_message_on():
     assert meanings([0.0, 0.3]) == [START, END]
 
 
+def test_a_message_that_is_missing_ends_a_hold_with_the_default_timeout():
+    assert meanings([0.0, 0.05, 0.1, 0.201]) == [START, MOVE, MOVE, END]
+
+
 def test_delayed_messages_that_arrive_together_move_nothing():
     assert MOVE not in meanings([0.0, *(1.0 + 0.0005 * number for number in range(60))])
 

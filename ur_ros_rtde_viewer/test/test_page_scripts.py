@@ -1,11 +1,14 @@
-"""Scripts of the page with --control in a headless Chromium, without a robot: uploads, lost connections, clicks after edits."""
+"""Scripts of the page with --control in a headless Chromium, without a robot: uploads, connections, edits, held buttons."""
 
 import contextlib
+import statistics
 import threading
+import time
 
 import pytest
 from freezing_proxy import FreezingProxy
 from running_viewer import COARSE, LIMIT, RunningViewer, Tab, until
+from ur_ros_rtde_viewer.control.jog import HOLD_RATE
 from ur_ros_rtde_viewer.page import uploads
 from ur_ros_rtde_viewer.page.edits import PAUSE
 from ur_ros_rtde_viewer.page.heartbeat import ANSWER_TIMEOUT, LOSS_TIMEOUT, NO_ANSWER, NO_CONNECTION
@@ -180,3 +183,14 @@ def test_stop_does_not_wait_for_edits_and_drops_the_clicks_that_do(tab, form, vi
     tab.page.wait_for_timeout(3e3 * PAUSE)
     tab.page.dispatch_event(STOP, "pointerup")
     assert not form.taken
+
+
+def test_the_browser_sends_as_many_messages_of_a_held_button_as_it_is_asked_for(tab, viewer, monkeypatch):
+    times = []
+    monkeypatch.setattr(viewer.viewer.control._robots[0].jog, "hold", lambda *_arguments: times.append(time.monotonic()))
+    tab.open("Jog")
+    with tab.held("Z +"):
+        until(lambda: len(times) > 2.0 * HOLD_RATE, "the messages")
+    periods = [after - before for before, after in zip(times, times[1:])]
+    print(f"longest period: {1e3 * max(periods):.0f} ms")
+    assert statistics.median(periods) == pytest.approx(1.0 / HOLD_RATE, rel=0.2)

@@ -17,7 +17,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from .control_node import ControlNode
 from .goals import Goals
 
-HOLD_RATE = 30.0  # Hz
+HOLD_RATE = 20.0  # Hz; viser's browser sends no more messages of a panel
 STREAM_TIMEOUT = 0.1  # s without a message, after which the driver ends the motion: the default of its parameter
 FIRST_GAP = 0.25  # s, the longest one before the motion begins
 # Messages that were delayed on their way arrive together. They are not signs of a held button.
