@@ -12,11 +12,22 @@ from ..playback.motion import read_file
 from ..ros.service_call import ServiceCaller
 from ..state.robot_state import RobotState
 
+# viser encodes a download within its event loop, 1 s for 300 MB: STOP of all browser tabs would wait.
+MAX_DOWNLOAD = 2_000_000  # bytes; 0.5 s at 30 Mbit/s, in which no answer to STOP is shown
 DEFAULT_FIELDS = "timestamp actual_q actual_qd actual_TCP_pose actual_TCP_force"
 
 
+def _hint(file: pathlib.Path) -> str:
+    """Returns how to use a file that is too large for a download, or an empty text. Raises OSError."""
+    size = file.stat().st_size
+    if size <= MAX_DOWNLOAD:
+        return ""
+    return (f"The file is on the host of the viewer. It has {size / 1e6:.1f} MB; at most {MAX_DOWNLOAD / 1e6:g} MB can be downloaded, "
+            f"because STOP would wait. Draw it there: `ur plot {file}`")
+
+
 class RecordingPanel:
-    """`folder`: where the driver writes its files. A file is offered for download if it is on this machine."""
+    """`folder`: where the driver writes its files. A small file is offered for download if it is on this machine."""
 
     def __init__(self, tab: Any, server: Any, services: ServiceCaller, replay: ReplayPanel, folder: pathlib.Path,
                  post: Callable[..., None]):
@@ -67,7 +78,11 @@ class RecordingPanel:
         lost = f", {response.lost} lost" if response.lost else ""
         self._message.content = f"`{response.filename}`: {response.rows} rows{lost}"
         self._file = pathlib.Path(response.filename)
-        self._download.visible = file_is_here = os.access(self._file, os.R_OK)
+        file_is_here = os.access(self._file, os.R_OK)
+        hint = _hint(self._file) if file_is_here else ""
+        self._download.visible = file_is_here and not hint
+        if hint:
+            self._message.content += f"\n\n{hint}"
         if file_is_here:
             file = self._file
             self._replay.replay(file.name, lambda ended: read_file(file, ended))
@@ -78,17 +93,18 @@ class RecordingPanel:
         self._fields.disabled = recording
 
     def _send(self, client: Any) -> None:
-        """Runs in a thread of the server, because the file may be large."""
+        """Runs in a thread of the server. The file may have grown: the next recording has begun."""
         file = self._file
         if file is None:
             return
         try:
-            content = file.read_bytes()
+            text = _hint(file)
+            if not text:
+                client.send_file_download(file.name, file.read_bytes())
+                return
         except OSError as error:
             text = f"{file}: {error.strerror}"
-            self._post(lambda: setattr(self._message, "content", text))
-            return
-        client.send_file_download(file.name, content)
+        self._post(lambda: setattr(self._message, "content", text))
 
     def update(self, _state: RobotState) -> None:
         pass
