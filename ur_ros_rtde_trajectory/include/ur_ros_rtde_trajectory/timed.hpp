@@ -21,6 +21,11 @@ struct TimedWaypoints {
 /// limits, rest at both ends.
 Status check_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
+/// Drops waypoints less than 0.1 ms from another one if no joint moves by more than 1e-3 rad in between, but
+/// not the first and the last. A planner that samples at a fixed rate and appends the end (MoveIt) sends such
+/// pairs.
+void drop_close_waypoints(TimedWaypoints & waypoints);
+
 /// If the first time is above 0, inserts `start`, at rest, as the first waypoint at time 0. The first time is
 /// then the duration of the motion from `start` to the first given position.
 void prepend_start(TimedWaypoints & waypoints, const Joints & start);
@@ -30,9 +35,11 @@ void prepend_start(TimedWaypoints & waypoints, const Joints & start);
 /// times are never changed.
 ///
 /// Positions only: cubic spline with continuous acceleration, at rest at both ends. The first and last
-/// interval are quintic, so that the acceleration starts and ends at zero. With velocities: quintic with
-/// continuous acceleration through the given velocities; accelerations are estimated from both neighboring
-/// intervals. With accelerations: quintic through all given values.
+/// interval are quintic, so that the acceleration starts and ends at zero, and so are those next to a
+/// position where a joint is held, turns back or changes its speed much: a joint passes its positions by at
+/// most 2 % of their distance. With velocities: quintic with continuous acceleration through the given
+/// velocities; accelerations are estimated from both neighboring intervals; between two positions with
+/// velocity 0, a joint stays between them. With accelerations: quintic through all given values.
 Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -1,5 +1,7 @@
 #include "path/spline.hpp"
 
+#include <cmath>
+
 namespace ur_ros_rtde::trajectory {
 namespace {
 
@@ -41,6 +43,23 @@ Tridiagonal inner_rows(std::span<const Joints> values, std::span<const double> w
   return system;
 }
 
+// Of one joint between two knots.
+void limit_slopes(double & before, double & after, double secant)
+{
+  constexpr double circle = 3.0;  // of the slopes relative to the secant
+  if (before * secant <= 0.0) {
+    before = 0.0;
+  }
+  if (after * secant <= 0.0) {
+    after = 0.0;
+  }
+  const double size = std::hypot(before, after);
+  if (size > circle * std::abs(secant)) {
+    before *= circle * std::abs(secant) / size;
+    after *= circle * std::abs(secant) / size;
+  }
+}
+
 }  // namespace
 
 std::vector<Joints> natural_spline_slopes(std::span<const Joints> values, std::span<const double> widths)
@@ -65,6 +84,17 @@ std::vector<Joints> clamped_spline_slopes(std::span<const Joints> values, std::s
   system.diagonal.back() = 1.0;
   system.right.back() = last;
   return std::move(system).solve();
+}
+
+void limit_slopes(std::vector<Joints> & slopes, std::span<const Joints> values,
+                  std::span<const double> widths)
+{
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const Joints secant = (values[i + 1] - values[i]) / widths[i];
+    for (int j = 0; j < joint_count; ++j) {
+      limit_slopes(slopes[i][j], slopes[i + 1][j], secant[j]);
+    }
+  }
 }
 
 }  // namespace ur_ros_rtde::trajectory

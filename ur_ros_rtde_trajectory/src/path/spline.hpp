@@ -15,4 +15,11 @@ std::vector<Joints> natural_spline_slopes(std::span<const Joints> values, std::s
 std::vector<Joints> clamped_spline_slopes(std::span<const Joints> values, std::span<const double> widths,
                                           const Joints & first, const Joints & last);
 
+/// Limits first derivatives at the knots, so that an interpolation stays between the values of adjacent knots
+/// (F. N. Fritsch and R. E. Carlson: Monotone Piecewise Cubic Interpolation, SIAM Journal on Numerical
+/// Analysis 17, 1980): 0 where the values are constant or turn back, less where they are much steeper than
+/// the line to a neighbor.
+void limit_slopes(std::vector<Joints> & slopes, std::span<const Joints> values,
+                  std::span<const double> widths);
+
 }  // namespace ur_ros_rtde::trajectory

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motion/motion.hpp"
 #include "path/quintic_hermite.hpp"
@@ -75,17 +76,21 @@ Expected<std::vector<Joints>> read_list(std::string_view field, const std::vecto
   return result;
 }
 
-// Velocities of the cubic spline with rest at both ends.
+// Velocities of the cubic spline with rest at both ends, limited so that no joint passes a position where it
+// is held or turns back.
 std::vector<Joints> spline_velocities(const Knots & knots)
 {
   if (knots.q.size() < 2) {
     return {Joints::Zero()};
   }
-  return clamped_spline_slopes(knots.q, knots.widths, Joints::Zero(), Joints::Zero());
+  auto velocities = clamped_spline_slopes(knots.q, knots.widths, Joints::Zero(), Joints::Zero());
+  limit_slopes(velocities, knots.q, knots.widths);
+  return velocities;
 }
 
-// Mean of the accelerations of the two cubics that meet at each inner knot (for the cubic spline they are
-// equal). Zero at both ends.
+// Harmonic mean of the accelerations of the two cubics that meet at each inner knot (for the cubic spline
+// they are equal), 0 if their signs differ: the cubic of a short interval must not swing the arm in a long
+// one. Between positions at rest, the quintic stays between them. Zero at both ends.
 std::vector<Joints> estimated_accelerations(const Knots & knots)
 {
   std::vector<Joints> result(knots.q.size(), Joints::Zero());
@@ -96,7 +101,7 @@ std::vector<Joints> estimated_accelerations(const Knots & knots)
                         6.0 * (knots.q[i] - knots.q[i - 1]) / (before * before);
     const Joints right = 6.0 * (knots.q[i + 1] - knots.q[i]) / (after * after) -
                          (4.0 * knots.v[i] + 2.0 * knots.v[i + 1]) / after;
-    result[i] = 0.5 * (left + right);
+    result[i] = (left * right > 0.0).select(2.0 * left * right / (left + right), 0.0);
   }
   return result;
 }
@@ -221,6 +226,32 @@ Trajectory make_trajectory(const Knots & knots, const std::vector<double> & time
   return Trajectory(std::move(motion));
 }
 
+bool are_close(const TimedWaypoints & waypoints, std::size_t first, std::size_t second)
+{
+  constexpr double same_position = 1e-3;  // rad
+  const double step = waypoints.times[second] - waypoints.times[first];
+  const auto & a = waypoints.positions[first];
+  const auto & b = waypoints.positions[second];
+  return step > 0.0 && step < shortest_step &&
+         std::equal(
+             a.begin(), a.end(), b.begin(), b.end(),
+             [](double x, double y) { return std::abs(x - y) <= same_position; });
+}
+
+template <typename T>
+void keep(std::vector<T> & list, const std::vector<std::size_t> & kept)
+{
+  if (list.empty()) {
+    return;
+  }
+  std::vector<T> result;
+  result.reserve(kept.size());
+  for (const std::size_t i : kept) {
+    result.push_back(std::move(list[i]));
+  }
+  list = std::move(result);
+}
+
 }  // namespace
 
 Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
@@ -238,6 +269,30 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits)
     }
   }
   return {};
+}
+
+void drop_close_waypoints(TimedWaypoints & waypoints)
+{
+  const std::size_t count = waypoints.times.size();
+  for (const auto * list : {&waypoints.positions, &waypoints.velocities, &waypoints.accelerations}) {
+    if (count < 3 || (!list->empty() && list->size() != count)) {
+      return;
+    }
+  }
+  std::vector<std::size_t> kept{0};
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    if (!are_close(waypoints, kept.back(), i)) {
+      kept.push_back(i);
+    }
+  }
+  if (kept.size() > 1 && are_close(waypoints, kept.back(), count - 1)) {
+    kept.pop_back();
+  }
+  kept.push_back(count - 1);
+  keep(waypoints.times, kept);
+  for (auto * list : {&waypoints.positions, &waypoints.velocities, &waypoints.accelerations}) {
+    keep(*list, kept);
+  }
 }
 
 void prepend_start(TimedWaypoints & waypoints, const Joints & start)

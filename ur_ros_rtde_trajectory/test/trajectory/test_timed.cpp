@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <tuple>
 
 #include "checks.hpp"
 #include "ur_ros_rtde_trajectory/timed.hpp"
@@ -117,6 +120,78 @@ TEST(TimedPositionsTest, StartAndEndWithZeroAcceleration)
   EXPECT_LE(use.velocity, 1.0);
   EXPECT_LE(use.acceleration, 1.0);
   EXPECT_LE(use.jerk, 1.0);
+}
+
+struct Held {
+  const char * name;
+  std::vector<double> times, positions;
+};
+
+/// All joints at the same positions, which `velocities` reaches at rest, or does not mention.
+TimedWaypoints waypoints_of(const Held & held, bool velocities)
+{
+  TimedWaypoints waypoints;
+  waypoints.times = held.times;
+  for (const double position : held.positions) {
+    waypoints.positions.emplace_back(joint_count, position);
+    if (velocities) {
+      waypoints.velocities.emplace_back(joint_count, 0.0);
+    }
+  }
+  return waypoints;
+}
+
+class HeldPositionTest : public testing::TestWithParam<std::tuple<Held, bool>> {};
+
+TEST_P(HeldPositionTest, IsNotLeftAndNoTargetIsPassed)
+{
+  const auto & [held, velocities] = GetParam();
+  const auto plan = plan_timed(waypoints_of(held, velocities), limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  for (std::size_t i = 0; i + 1 < held.times.size(); ++i) {
+    const auto [low, high] = std::minmax(held.positions[i], held.positions[i + 1]);
+    const double passed = velocities ? 1e-9 : 0.02 * (high - low) + 1e-9;
+    for (double t = held.times[i]; t < held.times[i + 1]; t += 0.01) {
+      const double position = plan->sample(t).position[3];
+      EXPECT_GE(position, low - passed) << "at " << t;
+      EXPECT_LE(position, high + passed) << "at " << t;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, HeldPositionTest,
+    testing::Combine(testing::Values(Held{"ShortAfterLong", {0.0, 4.0, 5.0}, {0.0, 0.1, 0.6}},
+                                     Held{"Dwell", {0.0, 2.0, 5.0, 7.0}, {0.0, 1.0, 1.0, 0.0}},
+                                     Held{"DwellOnTheWay", {0.0, 1.0, 3.0, 4.0}, {0.0, 0.3, 0.3, 0.6}},
+                                     Held{"Reversal", {0.0, 1.0, 2.0, 3.0}, {0.0, 0.5, -0.2, 0.1}},
+                                     Held{"Uneven", {0.0, 0.5, 3.5, 4.0}, {0.0, 0.3, 0.35, 0.7}}),
+                     testing::Bool()),
+    [](const auto & given) {
+      return std::string(std::get<0>(given.param).name) + (std::get<1>(given.param) ? "AtRest" : "");
+    });
+
+/// As MoveIt's time parameterization: samples at a fixed rate, and the end.
+TEST(CloseWaypointsTest, AreDroppedIfTheArmHardlyMovesBetweenThem)
+{
+  TimedWaypoints waypoints = samples(2);
+  waypoints.times[7] = waypoints.times[6] + 5e-5;
+  waypoints.positions[7] = waypoints.positions[6];
+  waypoints.times[8] = 2.0 - 5e-5;
+  waypoints.positions[8] = waypoints.positions[9];
+  TimedWaypoints dropped = waypoints;
+  drop_close_waypoints(dropped);
+  ASSERT_EQ(dropped.times.size(), waypoints.times.size() - 2);
+  EXPECT_EQ(dropped.times[6], waypoints.times[6]);
+  EXPECT_EQ(dropped.times[7], 2.0);
+  EXPECT_EQ(dropped.velocities[7], waypoints.velocities[9]);
+  EXPECT_EQ(dropped.accelerations.size(), dropped.times.size());
+  waypoints.positions[7][0] += 0.01;  // in 50 us
+  waypoints.times[9] = waypoints.times[8];
+  TimedWaypoints kept = waypoints;
+  drop_close_waypoints(kept);
+  EXPECT_EQ(kept.times, waypoints.times);
+  EXPECT_FALSE(plan_timed(kept, limits()));
 }
 
 TEST(PlanTimedTest, RejectsFirstExceededLimit)

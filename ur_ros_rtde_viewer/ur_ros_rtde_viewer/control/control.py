@@ -9,7 +9,7 @@ from ..page import edits, heartbeat, style, uploads
 from ..page.heartbeat import Heartbeat
 from ..page.scripts import script
 from ..panels.state_panel import StatePanel
-from .control_node import ControlNode
+from .control_node import ControlNode, create_steady_timer
 from .form_panel import FormPanel
 from .goals import end_all
 from .jog_panel import JogPanel
@@ -51,7 +51,7 @@ class Control:
             slider = next(panel.speed_slider for panel in robot.view.panels if isinstance(panel, StatePanel))
             robot.view.panels += [robot, SpeedControl(slider, robot.goals)]
         self._heartbeat = Heartbeat(viewer.server.gui)
-        self._node.node.create_timer(heartbeat.PERIOD, self._heartbeat.beat)
+        create_steady_timer(self._node.node, heartbeat.PERIOD, self._heartbeat.beat)
         self._node.start()
         self._add_stop(viewer.server.gui)
         viewer.server.on_client_connect(self._connect)
