@@ -45,8 +45,9 @@ def _base(name):
 def environment_of_test_commands(prefix):
     """Creates the prefix of the commands that are built with the tests. Returns the environment in which a driver finds them,
     which is empty if they have not been built."""
-    build = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[3] / "build" / "ur_ros_rtde_commands"
-    library = build / "test" / "plugins" / f"lib{TEST_COMMANDS}.so"
+    install = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[2]
+    build = install.with_name(install.name.replace("install", "build", 1))  # also those of a sanitizer: install-thread
+    library = build / "ur_ros_rtde_commands" / "test" / "plugins" / f"lib{TEST_COMMANDS}.so"
     if not library.is_file():
         return {}
     classes = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::{_base(name)}"/>'
