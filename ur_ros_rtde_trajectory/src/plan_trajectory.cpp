@@ -127,7 +127,9 @@ Status check_fields(const json & goal)
 Expected<trajectory::Trajectory> plan(const json & goal, const Limits & limits)
 {
   if (goal.contains("points")) {
-    return trajectory::plan_timed(read_points(goal["points"]), limits);
+    auto points = read_points(goal["points"]);
+    trajectory::drop_close_waypoints(points);  // as the driver does
+    return trajectory::plan_timed(points, limits);
   }
   trajectory::PathOptions options;
   options.blend_tolerance = goal.value("blend_tolerance", options.blend_tolerance);

@@ -17,8 +17,8 @@ struct SampledSegment {
 
 /// Plans the time-optimal motion through the samples, with a stop between two segments, within `limits` (as
 /// plan_path) and the minimum durations. `waypoints` are the path parameters, in non-decreasing order, that
-/// count as waypoints of the trajectory. `stop` cancels planning. Returns an error for lists whose lengths do
-/// not fit and for numbers that are not finite.
+/// count as waypoints of the trajectory. `stop` cancels planning. Returns an error for segments whose lists
+/// do not fit, or whose numbers are not finite.
 Expected<Trajectory> plan_sampled(const std::vector<SampledSegment> & segments,
                                   const std::vector<double> & waypoints, const Limits & limits,
                                   const std::stop_token & stop = {});

@@ -23,7 +23,8 @@ Status check_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
 /// Drops waypoints less than 0.1 ms from another one if no joint moves by more than 1e-3 rad in between, but
 /// not the first and the last. A planner that samples at a fixed rate and appends the end (MoveIt) sends such
-/// pairs.
+/// pairs. Later errors and waypoint numbers count the rest. Changes nothing if the lengths of the lists do
+/// not fit.
 void drop_close_waypoints(TimedWaypoints & waypoints);
 
 /// If the first time is above 0, inserts `start`, at rest, as the first waypoint at time 0. The first time is
@@ -35,11 +36,12 @@ void prepend_start(TimedWaypoints & waypoints, const Joints & start);
 /// times are never changed.
 ///
 /// Positions only: cubic spline with continuous acceleration, at rest at both ends. The first and last
-/// interval are quintic, so that the acceleration starts and ends at zero, and so are those next to a
-/// position where a joint is held, turns back or changes its speed much: a joint passes its positions by at
-/// most 2 % of their distance. With velocities: quintic with continuous acceleration through the given
-/// velocities; accelerations are estimated from both neighboring intervals; between two positions with
-/// velocity 0, a joint stays between them. With accelerations: quintic through all given values.
+/// interval are quintic, so that the acceleration starts and ends at zero. Between waypoints more than 0.1 s
+/// apart, the intervals next to a position at which a joint is held, turns back or changes its speed much are
+/// quintic too: it passes its positions by at most 2 % of their distance. With velocities: quintic with
+/// continuous acceleration through the given velocities; accelerations are estimated from both neighboring
+/// intervals; between two positions with velocity 0, a joint stays between them. With accelerations: quintic
+/// through all given values.
 Expected<Trajectory> plan_timed(const TimedWaypoints & waypoints, const Limits & limits);
 
 }  // namespace ur_ros_rtde::trajectory

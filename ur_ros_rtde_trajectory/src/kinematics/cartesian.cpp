@@ -28,7 +28,7 @@ Status check_range(std::string_view field, double value, bool may_be_zero)
                                      may_be_zero ? "of at least" : "above"));
 }
 
-Status check_positions(const std::vector<Pose> & poses, const Joints & start)
+Status check_finite(const std::vector<Pose> & poses, const Joints & start)
 {
   if (poses.empty()) {
     return failure(ErrorCode::invalid_goal, "poses is empty: the first is where the arm is");
@@ -98,7 +98,7 @@ Expected<Trajectory> plan_cartesian(const std::vector<Pose> & poses, const Arm &
                                     const trajectory::Limits & limits, const CartesianOptions & options,
                                     const IkFunction & ik, const std::stop_token & stop)
 {
-  for (const Status & status : {check_positions(poses, start), check_range("speed", options.speed, false),
+  for (const Status & status : {check_finite(poses, start), check_range("speed", options.speed, false),
                                 check_range("rotation_speed", options.rotation_speed, false),
                                 check_range("blend_radius", options.blend_radius, true)}) {
     if (!status) {

@@ -87,9 +87,13 @@ std::vector<Joints> clamped_spline_slopes(std::span<const Joints> values, std::s
 }
 
 void limit_slopes(std::vector<Joints> & slopes, std::span<const Joints> values,
-                  std::span<const double> widths)
+                  std::span<const double> widths, double dense)
 {
+  const auto is_dense = [&](std::size_t i) { return i >= widths.size() || widths[i] <= dense; };
   for (std::size_t i = 0; i < widths.size(); ++i) {
+    if (is_dense(i) && is_dense(i + 1) && (i == 0 || is_dense(i - 1))) {
+      continue;
+    }
     const Joints secant = (values[i + 1] - values[i]) / widths[i];
     for (int j = 0; j < joint_count; ++j) {
       limit_slopes(slopes[i][j], slopes[i + 1][j], secant[j]);

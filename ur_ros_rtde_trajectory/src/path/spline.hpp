@@ -17,9 +17,10 @@ std::vector<Joints> clamped_spline_slopes(std::span<const Joints> values, std::s
 
 /// Limits first derivatives at the knots, so that an interpolation stays between the values of adjacent knots
 /// (F. N. Fritsch and R. E. Carlson: Monotone Piecewise Cubic Interpolation, SIAM Journal on Numerical
-/// Analysis 17, 1980): 0 where the values are constant or turn back, less where they are much steeper than
-/// the line to a neighbor.
+/// Analysis 17, 1980): 0 at knots from which the values go back or stay, less where the slope is much steeper
+/// than the line to a neighbor. Intervals up to `dense` wide between neighbors up to `dense` wide do not
+/// count.
 void limit_slopes(std::vector<Joints> & slopes, std::span<const Joints> values,
-                  std::span<const double> widths);
+                  std::span<const double> widths, double dense);
 
 }  // namespace ur_ros_rtde::trajectory

@@ -14,8 +14,9 @@
 namespace ur_ros_rtde::trajectory {
 namespace {
 
-constexpr double at_rest = 1e-3;        // rad/s; lower velocities count as rest
-constexpr double shortest_step = 1e-4;  // s; below, rounding errors dominate
+constexpr double at_rest = 1e-3;            // rad/s; lower velocities count as rest
+constexpr double shortest_step = 1e-4;      // s; below, rounding errors dominate
+constexpr double longest_sampling = 0.101;  // s; MoveIt samples every 0.1 s
 
 struct Knots {
   std::vector<double> widths;  // s
@@ -76,21 +77,23 @@ Expected<std::vector<Joints>> read_list(std::string_view field, const std::vecto
   return result;
 }
 
-// Velocities of the cubic spline with rest at both ends, limited so that no joint passes a position where it
-// is held or turns back.
+// Velocities of the cubic spline with rest at both ends. Between waypoints that are far apart in time, they
+// are limited so that no joint passes a position at which it is held or turns back. Close ones are samples of
+// a smooth motion, which turns back between two of them.
 std::vector<Joints> spline_velocities(const Knots & knots)
 {
   if (knots.q.size() < 2) {
     return {Joints::Zero()};
   }
   auto velocities = clamped_spline_slopes(knots.q, knots.widths, Joints::Zero(), Joints::Zero());
-  limit_slopes(velocities, knots.q, knots.widths);
+  limit_slopes(velocities, knots.q, knots.widths, longest_sampling);
   return velocities;
 }
 
 // Harmonic mean of the accelerations of the two cubics that meet at each inner knot (for the cubic spline
-// they are equal), 0 if their signs differ: the cubic of a short interval must not swing the arm in a long
-// one. Between positions at rest, the quintic stays between them. Zero at both ends.
+// they are equal unless its slopes were limited), 0 if their signs differ: the cubic of a short interval must
+// not swing the arm in a long one. Between positions at rest, the quintic stays between them. Zero at both
+// ends.
 std::vector<Joints> estimated_accelerations(const Knots & knots)
 {
   std::vector<Joints> result(knots.q.size(), Joints::Zero());
@@ -275,9 +278,12 @@ void drop_close_waypoints(TimedWaypoints & waypoints)
 {
   const std::size_t count = waypoints.times.size();
   for (const auto * list : {&waypoints.positions, &waypoints.velocities, &waypoints.accelerations}) {
-    if (count < 3 || (!list->empty() && list->size() != count)) {
+    if (!list->empty() && list->size() != count) {
       return;
     }
+  }
+  if (count < 3 || waypoints.positions.empty()) {
+    return;
   }
   std::vector<std::size_t> kept{0};
   for (std::size_t i = 1; i + 1 < count; ++i) {

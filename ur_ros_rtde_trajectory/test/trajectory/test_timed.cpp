@@ -171,6 +171,38 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(std::get<0>(given.param).name) + (std::get<1>(given.param) ? "AtRest" : "");
     });
 
+class SmoothReversalTest : public testing::TestWithParam<std::tuple<double, double>> {};
+
+/// Samples of q = 0.3 sin^4(pi t / 3), which turns back at 1.5 s, between two of them.
+TEST_P(SmoothReversalTest, IsAsSmoothAsWhatWasSampled)
+{
+  const auto & [step, phase] = GetParam();
+  const double end = 3.0;
+  TimedWaypoints waypoints;
+  const auto add = [&](double t) {
+    waypoints.times.push_back(t);
+    waypoints.positions.emplace_back(joint_count, 0.3 * std::pow(std::sin(M_PI * t / end), 4));
+  };
+  add(0.0);
+  for (double t = (1.0 - phase) * step; t < end - 0.4 * step; t += step) {
+    add(t);
+  }
+  add(end);
+  const auto plan = plan_timed(waypoints, limits());
+  ASSERT_TRUE(plan) << plan.error().message;
+  double acceleration = 0.0, jerk = 0.0;
+  for (double t = 0.5; t < end - 0.5; t += 0.0005) {
+    acceleration = std::max(acceleration, plan->sample(t).acceleration.abs().maxCoeff());
+    jerk = std::max(jerk, plan->sample(t).jerk.abs().maxCoeff());
+  }
+  EXPECT_LT(acceleration, 1.05 * 1.316);  // of the sampled motion
+  EXPECT_LT(jerk, 1.05 * 3.77);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sampled, SmoothReversalTest,
+                         testing::Combine(testing::Values(0.008, 0.02, 0.05, 0.1),
+                                          testing::Values(0.0, 0.3, 0.5)));
+
 /// As MoveIt's time parameterization: samples at a fixed rate, and the end.
 TEST(CloseWaypointsTest, AreDroppedIfTheArmHardlyMovesBetweenThem)
 {
@@ -192,6 +224,18 @@ TEST(CloseWaypointsTest, AreDroppedIfTheArmHardlyMovesBetweenThem)
   drop_close_waypoints(kept);
   EXPECT_EQ(kept.times, waypoints.times);
   EXPECT_FALSE(plan_timed(kept, limits()));
+}
+
+TEST(CloseWaypointsTest, StayIfTheListsDoNotFit)
+{
+  TimedWaypoints waypoints;
+  waypoints.times = {0.0, 5e-5, 1e-4, 1.0};
+  for (int i = 0; i < 3; ++i) {
+    drop_close_waypoints(waypoints);
+    EXPECT_EQ(waypoints.times.size(), 4U);
+    EXPECT_FALSE(plan_timed(waypoints, limits()));
+    waypoints.positions.emplace_back(joint_count, 0.0);
+  }
 }
 
 TEST(PlanTimedTest, RejectsFirstExceededLimit)

@@ -50,20 +50,20 @@ class Control:
         for robot in self._robots:
             slider = next(panel.speed_slider for panel in robot.view.panels if isinstance(panel, StatePanel))
             robot.view.panels += [robot, SpeedControl(slider, robot.goals)]
-        self._heartbeat = Heartbeat(viewer.server.gui)
+        self._heartbeat = self._add_stop(viewer.server.gui)
         create_steady_timer(self._node.node, heartbeat.PERIOD, self._heartbeat.beat)
         self._node.start()
-        self._add_stop(viewer.server.gui)
         viewer.server.on_client_connect(self._connect)
         viewer.server.on_client_disconnect(self._disconnect)
 
-    def _add_stop(self, gui: Any) -> None:
+    def _add_stop(self, gui: Any) -> Heartbeat:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
             gui.add_html(style.STOP + ESCAPE_IN_INPUTS + uploads.LIMIT + edits.CLICKS_AFTER_EDITS)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
+            shown = Heartbeat(gui)
         self._stop_panel.float(x=-15, y=-15, width=STOP_WIDTH)
 
         async def stop(_event: Any) -> None:
@@ -72,6 +72,7 @@ class Control:
         button.on_hold(stop, callback_hz=STOP_REPEAT)  # the first call comes when the button is pressed, not when it is released
         button.on_click(stop)  # with the keyboard
         gui.add_command("STOP", description="Decelerates all robots of this page", hotkey=STOP_KEY).on_trigger(stop)
+        return shown
 
     def update(self) -> None:
         """Opens the window with STOP again if it was minimized. Called in the thread of the viewer's loop."""

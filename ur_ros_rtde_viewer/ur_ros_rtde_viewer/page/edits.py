@@ -52,7 +52,7 @@ const pass = button => {{
 }};
 window.addEventListener('click', event => {{
   const button = event.target.closest?.('button, input[type=checkbox]');
-  if (!button || button === passing || button.matches('{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput]')) return;
+  if (!button || button === passing || button.matches('{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput], [class*=Spotlight]')) return;
   if (performance.now() - edited >= PAUSE) return;
   event.stopImmediatePropagation();
   event.preventDefault();

@@ -36,10 +36,10 @@ setInterval(() => {{
   const now = performance.now(), passed = Math.min(now - before, {2e3 * CHECK_PERIOD:g});
   const newBeat = text('.heartbeat'), newAnswer = text('.stop-answers');
   before = now;
-  const isAlive = newBeat !== '' && newBeat !== beat;
+  const isAlive = newBeat !== '' && newBeat !== beat, isBack = isAlive && silence >= {1e3 * LOSS_TIMEOUT:g};
   if (isAlive) beat = newBeat;
-  silence = isAlive || beat === '' || document.hidden ? 0 : silence + passed;
-  if (waiting !== null) waiting = newAnswer !== '' && newAnswer !== answer ? null : waiting + passed;
+  silence = isAlive || newBeat === '' || document.hidden ? 0 : silence + passed;
+  if (waiting !== null) waiting = newAnswer === '' || newAnswer !== answer || isBack ? null : waiting + passed;
   window.showNotice('heartbeat', silence >= {1e3 * LOSS_TIMEOUT:g} ? '{NO_CONNECTION}' :
       waiting >= {1e3 * ANSWER_TIMEOUT:g} ? '{NO_ANSWER}' : '');
 }}, {1e3 * CHECK_PERIOD:g});
@@ -47,7 +47,7 @@ setInterval(() => {{
 
 
 class Heartbeat:
-    """Called in one thread: that which executes STOP."""
+    """Called in one thread: that which executes STOP. Its element is in the window of STOP: viser removes those of collapsed panels."""
 
     def __init__(self, gui: Any):
         self._element = gui.add_html("")
