@@ -112,5 +112,6 @@ def test_limits_are_those_of_driver_and_simulator(published, name):
             assert joints[joint].get("type") == "continuous" and limit.get("lower") is limit.get("upper") is None
             continue
         assert joints[joint].get("type") == "revolute"
-        assert float(limit.get("upper")) == -float(limit.get("lower")) == expected["position_max"][i]
-        assert float(limit.get("upper")) == expected["driver_limits"]["position"][i] == 2.0 * math.pi
+        assert expected["position_max"][i] == expected["driver_limits"]["position"][i] == 2.0 * math.pi
+        if joint != "elbow_joint":  # narrower, for planners: test_urdf.py
+            assert float(limit.get("upper")) == -float(limit.get("lower")) == expected["position_max"][i]

@@ -61,6 +61,16 @@ def test_the_frames_have_the_orientations_of_rep_103():
     np.testing.assert_allclose(frames["flange"][:3, 0], frames["tool0"][:3, 2], atol=1e-12)  # x of flange leads out of the arm
 
 
+@pytest.mark.parametrize("model", models())
+def test_the_position_limits_are_those_of_ur_description(model):
+    """The elbow is limited to half of what the controller allows."""
+    turns = [2.0, 2.0, 1.0, 2.0, 2.0, None if model in ("ur3", "ur3e") else 2.0]
+    for name, limit in zip(JOINTS, turns):
+        found = urdf(model).find(f"joint[@name='{name}']/limit")
+        expected = (None, None) if limit is None else (-limit * math.pi, limit * math.pi)
+        assert tuple(value and float(value) for value in (found.get("lower"), found.get("upper"))) == expected, name
+
+
 def test_the_prefix_is_part_of_every_name_but_the_parent():
     robot = urdf("ur3", tf_prefix="left_", parent="table", tool_length=0.1)
     plain = urdf("ur3", tool_length=0.1, parent="table")

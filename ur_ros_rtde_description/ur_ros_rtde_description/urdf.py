@@ -14,7 +14,10 @@ from .tool import Tool
 FRAMES = ("base_link", "base", "flange", "tool0")  # links without geometry
 ARM_LINKS = (*FRAMES, "base_link_inertia", *LINKS)
 FIXED_JOINTS = ("base_joint", "base_link-base_link_inertia", "base_link-base_fixed_joint", "wrist_3-flange", "flange-tool0")
-POSITION_LIMIT = 2.0 * math.pi  # rad, of all joints that are not continuous
+POSITION_LIMIT = 2.0 * math.pi  # rad, of all joints that are not continuous, except the elbow
+# As in ur_description. The controller allows 2 pi, but the arm itself blocks the elbow at about pi: planners would search for paths between
+# parts of the space that are not connected (ros-industrial/universal_robot#265).
+ELBOW_LIMIT = math.pi  # rad
 XACRO = "http://www.ros.org/wiki/xacro"
 
 
@@ -104,5 +107,6 @@ def _add_joints(robot: xml.Element, options: Options) -> None:
         xml.SubElement(joint, "axis", xyz="0 0 1")
         limit = xml.SubElement(joint, "limit", effort=number(model.max_torque[index]), velocity=number(model.max_velocity[index]))
         if not continuous:
-            limit.set("lower", number(-POSITION_LIMIT))
-            limit.set("upper", number(POSITION_LIMIT))
+            largest = ELBOW_LIMIT if name == "elbow_joint" else POSITION_LIMIT
+            limit.set("lower", number(-largest))
+            limit.set("upper", number(largest))
