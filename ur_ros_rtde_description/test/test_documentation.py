@@ -11,6 +11,7 @@ from ur_ros_rtde_description.kinematics import nominal_origins
 from ur_ros_rtde_description.launch_arguments import check_names
 from ur_ros_rtde_description.models import find_model
 from ur_ros_rtde_description.program import describe
+from ur_ros_rtde_description.urdf import FIXED_JOINTS, FRAMES
 
 BACKGROUND = True
 PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "description.md").read_text()
@@ -38,6 +39,12 @@ def test_the_options_exist():
     known = parser().format_help()
     options = set(re.findall(r"`(--[a-z-]+)", PAGE)) - {"--help"}
     assert len(options) >= 9 and all(option in known for option in options)
+
+
+def test_every_frame_and_fixed_joint_is_described():
+    section = PAGE.split("## Frames")[1].split("\n## ")[0]
+    assert set(FRAMES) - set(re.findall(r"^\| `(\w+)`", section, re.M)) == set()
+    assert [name for name in FIXED_JOINTS if f"`{name}`" not in section] == []
 
 
 def test_the_launch_arguments_exist():

@@ -16,10 +16,11 @@ from ur_ros_rtde_description.urdf import make_urdf, make_xacro
 
 BACKGROUND = True
 # The links, and parent and child of the joints, of ur_description.
-LINK_NAMES = {"world", "base_link", "base_link_inertia", "base", *LINKS, "flange", "tool0"}
+LINK_NAMES = {"world", "base_link", "base_link_inertia", "base", *LINKS, "flange", "tool0", "ft_frame"}
 JOINT_NAMES = {"base_joint": ("world", "base_link"), "base_link-base_link_inertia": ("base_link", "base_link_inertia"),
                "base_link-base_fixed_joint": ("base_link", "base"), "wrist_3-flange": ("wrist_3_link", "flange"),
-               "flange-tool0": ("flange", "tool0"), **dict(zip(JOINTS, zip(("base_link_inertia", *LINKS), LINKS)))}
+               "flange-tool0": ("flange", "tool0"), "wrist_3_link-ft_frame": ("wrist_3_link", "ft_frame"),
+               **dict(zip(JOINTS, zip(("base_link_inertia", *LINKS), LINKS)))}
 JOINTS_AT = (0.3, -1.2, 1.4, -0.8, 1.1, 0.6)
 TOOL = """<robot name="gripper">
   <link name="palm"><inertial><mass value="0.9"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
@@ -59,6 +60,7 @@ def test_the_frames_have_the_orientations_of_rep_103():
     np.testing.assert_allclose(frames["base"][:3, :3], rotation(2, math.pi), atol=1e-12)
     np.testing.assert_allclose(frames["tool0"], frames["wrist_3_link"], atol=1e-12)
     np.testing.assert_allclose(frames["flange"][:3, 0], frames["tool0"][:3, 2], atol=1e-12)  # x of flange leads out of the arm
+    np.testing.assert_allclose(frames["ft_frame"], frames["wrist_3_link"] @ Origin(rpy=(math.pi, 0.0, 0.0)).transform(), atol=1e-12)
 
 
 @pytest.mark.parametrize("model", models())

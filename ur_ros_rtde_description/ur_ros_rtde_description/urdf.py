@@ -11,9 +11,10 @@ from .models import JOINTS, LINKS, Model
 from .shapes import base_height, link_shapes
 from .tool import Tool
 
-FRAMES = ("base_link", "base", "flange", "tool0")  # links without geometry
+FRAMES = ("base_link", "base", "flange", "tool0", "ft_frame")  # links without geometry
 ARM_LINKS = (*FRAMES, "base_link_inertia", *LINKS)
-FIXED_JOINTS = ("base_joint", "base_link-base_link_inertia", "base_link-base_fixed_joint", "wrist_3-flange", "flange-tool0")
+FIXED_JOINTS = ("base_joint", "base_link-base_link_inertia", "base_link-base_fixed_joint", "wrist_3-flange", "flange-tool0",
+                "wrist_3_link-ft_frame")
 POSITION_LIMIT = 2.0 * math.pi  # rad, of all joints that are not continuous, except the elbow
 # As in ur_description. The controller allows 2 pi, but the arm itself blocks the elbow at about pi: planners would search for paths between
 # parts of the space that are not connected (ros-industrial/universal_robot#265).
@@ -94,6 +95,7 @@ def _add_frames(robot: xml.Element, prefix: str) -> None:
     fix("base_link-base_fixed_joint", "base_link", "base", 0.0, 0.0, math.pi)
     fix("wrist_3-flange", "wrist_3_link", "flange", 0.0, -quarter, -quarter)
     fix("flange-tool0", "flange", "tool0", quarter, 0.0, quarter)
+    fix("wrist_3_link-ft_frame", "wrist_3_link", "ft_frame", math.pi, 0.0, 0.0)
 
 
 def _add_joints(robot: xml.Element, options: Options) -> None:
