@@ -21,6 +21,9 @@ JOINT_NAMES = {"base_joint": ("world", "base_link"), "base_link-base_link_inerti
                "base_link-base_fixed_joint": ("base_link", "base"), "wrist_3-flange": ("wrist_3_link", "flange"),
                "flange-tool0": ("flange", "tool0"), "wrist_3_link-ft_frame": ("wrist_3_link", "ft_frame"),
                **dict(zip(JOINTS, zip(("base_link_inertia", *LINKS), LINKS)))}
+EFFORTS = {"ur3": (56, 56, 28, 12, 12, 12), "ur3e": (54, 54, 28, 9, 9, 9), "ur5": (150, 150, 150, 28, 28, 28),
+           "ur5e": (150, 150, 150, 28, 28, 28), "ur10": (330, 330, 150, 56, 56, 56), "ur10e": (330, 330, 150, 54, 54, 54),
+           "ur16e": (330, 330, 150, 54, 54, 54), "ur20": (738, 738, 433, 107, 107, 107), "ur30": (738, 738, 433, 107, 107, 107)}
 JOINTS_AT = (0.3, -1.2, 1.4, -0.8, 1.1, 0.6)
 TOOL = """<robot name="gripper">
   <link name="palm"><inertial><mass value="0.9"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
@@ -71,6 +74,12 @@ def test_the_position_limits_are_those_of_ur_description(model):
         found = urdf(model).find(f"joint[@name='{name}']/limit")
         expected = (None, None) if limit is None else (-limit * math.pi, limit * math.pi)
         assert tuple(value and float(value) for value in (found.get("lower"), found.get("upper"))) == expected, name
+
+
+@pytest.mark.parametrize("model", EFFORTS)
+def test_the_efforts_are_those_of_ur_description(model):
+    """Of config/<model>/joint_limits.yaml. test_models.py compares those of all models with driver and simulator."""
+    assert tuple(float(urdf(model).find(f"joint[@name='{name}']/limit").get("effort")) for name in JOINTS) == EFFORTS[model]
 
 
 def test_the_prefix_is_part_of_every_name_but_the_parent():

@@ -27,6 +27,7 @@ struct Model {
 
 // Nm. "Max. joint torques" in UR's user manuals.
 constexpr Vector6 ur3_torques{56.0, 56.0, 28.0, 12.0, 12.0, 12.0};
+constexpr Vector6 ur3e_torques{54.0, 54.0, 28.0, 9.0, 9.0, 9.0};
 constexpr Vector6 ur5_torques{150.0, 150.0, 150.0, 28.0, 28.0, 28.0};
 constexpr Vector6 ur10_torques{330.0, 330.0, 150.0, 56.0, 56.0, 56.0};
 constexpr Vector6 ur10e_torques{330.0, 330.0, 150.0, 54.0, 54.0, 54.0};
@@ -38,7 +39,7 @@ constexpr std::array models{
     Model{"ur3", {two_turns, degrees(180, 180, 180, 360, 360, 360), ur3_torques, 0.5}},
     Model{"ur5", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
     Model{"ur10", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10_torques, 1.3}},
-    Model{"ur3e", {two_turns, degrees(180, 180, 180, 360, 360, 360), ur3_torques, 0.5}},
+    Model{"ur3e", {two_turns, degrees(180, 180, 180, 360, 360, 360), ur3e_torques, 0.5}},
     Model{"ur5e", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
     Model{"ur7e", {two_turns, degrees(180, 180, 180, 180, 180, 180), ur5_torques, 0.85}},
     Model{"ur10e", {two_turns, degrees(120, 120, 180, 180, 180, 180), ur10e_torques, 1.3}},

@@ -43,6 +43,7 @@ constexpr JointValues speed_ur10{120, 120, 180, 180, 180, 180};
 constexpr JointValues speed_ur15{180, 180, 240, 300, 300, 300};
 constexpr JointValues speed_ur20{120, 120, 150, 210, 210, 210};
 constexpr JointValues torque3{56, 56, 28, 12, 12, 12};
+constexpr JointValues torque3e{54, 54, 28, 9, 9, 9};
 constexpr JointValues torque5{150, 150, 150, 28, 28, 28};
 constexpr JointValues torque10{330, 330, 150, 56, 56, 56};
 constexpr JointValues torque10e{330, 330, 150, 54, 54, 54};
@@ -59,7 +60,7 @@ constexpr std::array<ModelParameters, 14> model_parameters{{
     {"ur10", "UR10", "UR10", 2, Series::cb3, 0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922, speed_ur10,
      torque10, 10, 1.3, 0.220941, 0.049042},
     {"ur3e", "UR3e", "UR3", 3, Series::e_series, 0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921,
-     speed_ur3, torque3, 3, 0.5, 0.12, 0.027},
+     speed_ur3, torque3e, 3, 0.5, 0.12, 0.027},
     {"ur5e", "UR5e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, speed_ur5,
      torque5, 5, 0.85, 0.138, 0.007},
     {"ur7e", "UR7e", "UR5", 1, Series::e_series, 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996, speed_ur5,
@@ -103,9 +104,9 @@ double torque_constant(double torque_max)
 /// size.
 double joint_radius(double torque_max)
 {
-  static const std::map<double, double> radii{{12, 0.0315}, {28, 0.0375},  {54, 0.045},  {56, 0.045},
-                                              {70, 0.049},  {107, 0.0575}, {150, 0.058}, {204, 0.064},
-                                              {330, 0.075}, {433, 0.08},   {738, 0.098}};
+  static const std::map<double, double> radii{{9, 0.0315},  {12, 0.0315}, {28, 0.0375},  {54, 0.045},
+                                              {56, 0.045},  {70, 0.049},  {107, 0.0575}, {150, 0.058},
+                                              {204, 0.064}, {330, 0.075}, {433, 0.08},   {738, 0.098}};
   return radii.at(torque_max);
 }
 
