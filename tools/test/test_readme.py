@@ -8,8 +8,9 @@ import shlex
 import subprocess
 
 import pytest
+import yaml
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, COMMANDS, VIEW, _parse_arguments
-from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, TWO_ROBOTS, check_name, to_values
+from ur_ros_rtde_launch.launch_arguments import DRIVER, MODELS, MOVEIT, SIDES, TWO_ROBOTS, check_name, to_values
 from ur_ros_rtde_viewer import program as program_of_viewer
 from ur_tools import main, packages, selection, simulation
 from ur_tools.environment import program
@@ -197,6 +198,20 @@ def test_the_launch_arguments_are_declared():
                 if "<" not in text:
                     to_values(LAUNCH_FILES[launch_file], {name: text.strip("`,.;)")})
                 check_name(name, [argument.name for argument in LAUNCH_FILES[launch_file]], f"{launch_file}.launch.py")
+
+
+def test_the_controllers_and_relays_of_two_arms_have_the_names_of_their_drivers():
+    page = PAGES[ROOT / "docs" / "use" / "description.md"]
+    example, = (yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", page, re.S) if "controller_names" in block)
+    file = yaml.safe_load((ROOT / "ur_ros_rtde" / "config" / "moveit" / "moveit_controllers.yaml").read_text())
+    one_arm = file["moveit_simple_controller_manager"]["follow_joint_trajectory"]
+    names = {argument.name: argument.default for argument in TWO_ROBOTS}
+    manager = example["moveit_simple_controller_manager"]
+    assert manager == {"controller_names": [names[f"{side}_namespace"] for side in SIDES], **{
+        names[f"{side}_namespace"]: {**one_arm, "action_ns": "follow_joint_trajectory",
+                                     "joints": [names[f"{side}_tf_prefix"] + joint for joint in one_arm["joints"]]} for side in SIDES}}
+    for side in SIDES:
+        assert f"relay /{names[f'{side}_namespace']}/joint_states /joint_states" in page
 
 
 def test_launch_file_and_driver_have_the_same_models():
