@@ -1,6 +1,5 @@
 """Starts the driver of one robot: robot_state_receiver, command_server and dashboard_server, in one or three processes."""
 
-import os
 import pathlib
 
 from launch.actions import EmitEvent, ExecuteProcess, OpaqueFunction, RegisterEventHandler
@@ -9,7 +8,15 @@ from launch.events import Shutdown, matches_action
 from launch.events.process import ShutdownProcess
 from launch_ros.actions import Node
 from launch_ros.substitutions import ExecutableInPackage
-from ur_ros_rtde_launch.launch_arguments import DEFAULT_SIMULATED_MODEL, DRIVER, NODES, PARAMETERS, ArgumentError, write_parameters
+from ur_ros_rtde_launch.launch_arguments import (
+    DEFAULT_SIMULATED_MODEL,
+    DRIVER,
+    NODES,
+    PARAMETERS,
+    ArgumentError,
+    check_file,
+    write_parameters,
+)
 from ur_ros_rtde_launch.launch_support import make_launch_description
 
 DEFAULTS = {argument.name: argument.default for argument in DRIVER}
@@ -26,8 +33,7 @@ def start(_context, given):
         parameters["robot_ip"] = options["sim_ip"]
     elif not options["robot_ip"] and not options["params_file"]:
         raise ArgumentError("the address of the robot is missing: set robot_ip:=<address>, or sim:=true for a simulated robot")
-    if options["params_file"] and not os.path.isfile(options["params_file"]):
-        raise ArgumentError(f"params_file is \"{options['params_file']}\": the file does not exist")
+    check_file("params_file", options["params_file"])
 
     nodes = driver(options, parameters)
     return [*(simulator(options, nodes) if options["sim"] else []), *nodes]

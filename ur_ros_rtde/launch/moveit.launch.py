@@ -5,7 +5,6 @@ follow_joint_trajectory of the driver, so the files of ur_moveit_config are used
 """
 
 import pathlib
-import shlex
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from launch.actions import IncludeLaunchDescription
@@ -14,7 +13,7 @@ from launch.substitutions import Command, PathJoinSubstitution
 from launch_ros.actions import Node, SetRemap
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-from ur_ros_rtde_launch.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError
+from ur_ros_rtde_launch.launch_arguments import MOVEIT, UNSUPPORTED_BY_MOVEIT, ArgumentError, check_file, xacro_arguments
 from ur_ros_rtde_launch.launch_support import make_launch_description
 
 # Packages that the launch files of ur_moveit_config need besides RViz. xacro generates the robot_description.
@@ -30,16 +29,18 @@ def generate_launch_description():
 
 
 def start(_context, given):
+    calibration = given.get("kinematics_params_file", "")
+    check_file("kinematics_params_file", calibration)
     missing = [package for package in PACKAGES if not installed(package)]
     if missing:
         raise ArgumentError(f"moveit.launch.py needs packages that are not installed: {', '.join(missing)}. "
                             "Install them with `sudo apt install ros-$ROS_DISTRO-ur` and source the workspace again")
     check_model(given["ur_type"])
-    check_calibration(given.get("kinematics_params_file"))
+    check_calibration(calibration)
     arguments = {"ur_type": given["ur_type"], "launch_rviz": str(given.get("launch_rviz", True)).lower(),
                  "launch_servo": "false"}  # on by default in Humble
-    return [robot_state_publisher(given["ur_type"], given.get("kinematics_params_file")),
-            *remappings(), included("ur_moveit_config", "ur_moveit.launch.py", arguments)]
+    return [robot_state_publisher(given["ur_type"], calibration), *remappings(),
+            included("ur_moveit_config", "ur_moveit.launch.py", arguments)]
 
 
 def check_model(model):
@@ -68,8 +69,7 @@ def installed(package):
 
 def robot_state_publisher(model, kinematics_params_file):
     xacro = PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"])
-    calibration = [" kinematics_params:=", shlex.quote(kinematics_params_file)] if kinematics_params_file else []
-    description = Command(["xacro ", xacro, " name:=", model, " ur_type:=", model, *calibration])
+    description = Command(["xacro ", xacro, " ", xacro_arguments(model, kinematics_params_file)])
     return Node(package="robot_state_publisher", executable="robot_state_publisher", output="screen",
                 parameters=[{"robot_description": ParameterValue(description, value_type=str)}])
 

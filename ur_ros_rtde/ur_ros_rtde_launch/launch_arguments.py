@@ -2,7 +2,9 @@
 
 import copy
 import difflib
+import os
 import re
+import shlex
 import tempfile
 from dataclasses import dataclass
 from typing import Any, Collection, Dict, Iterable, List, Optional, Tuple
@@ -210,6 +212,18 @@ def check_name(name: str, known: Collection[str], launch_file: str) -> None:
 def to_values(arguments: Iterable[Argument], texts: Dict[str, str]) -> Dict[str, Any]:
     """Returns the values of the arguments that `texts` contains."""
     return {argument.name: argument.value(texts[argument.name]) for argument in arguments if argument.name in texts}
+
+
+def check_file(name: str, path: str) -> None:
+    """Raises ArgumentError if `path`, the value of the argument `name`, is given and is no file."""
+    if path and not os.path.isfile(path):
+        raise ArgumentError(f"{name} is \"{path}\": the file does not exist")
+
+
+def xacro_arguments(model: str, kinematics_params_file: str) -> str:
+    """Returns the arguments of ur.urdf.xacro of ur_description, which would look for a relative path in its own folder."""
+    calibration = f" kinematics_params:={shlex.quote(os.path.abspath(kinematics_params_file))}" if kinematics_params_file else ""
+    return f"name:={model} ur_type:={model}{calibration}"
 
 
 def write_parameters(parameters: Dict[str, Any]) -> str:

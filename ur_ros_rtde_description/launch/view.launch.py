@@ -1,7 +1,6 @@
 """Shows an arm in RViz: robot_state_publisher with the URDF and the joint states of the driver, and RViz."""
 
 import pathlib
-import shlex
 from typing import Dict
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
@@ -12,7 +11,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 from ur_ros_rtde_description.errors import DescriptionError
-from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names, description_options, is_true
+from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names, description_options, is_true, xacro_arguments
 from ur_ros_rtde_description.urdf import Options, make_urdf
 
 
@@ -60,7 +59,5 @@ def ur_description(values: Dict[str, str], options: Options) -> Command:
     if options.parent != "world" or options.mount != Options(options.model).mount or options.tool is not None:
         raise DescriptionError("launch argument meshes is \"true\": the URDF of ur_description has no mounting pose and no tool; omit "
                                "parent, xyz, rpy and tool, or meshes:=true")
-    file, name = values["kinematics_params_file"], options.model.name
-    kinematics = f" kinematics_params:={shlex.quote(file)}" if file else ""
-    return Command(["xacro ", PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"]), f" name:={name}",
-                    f" ur_type:={name}", f" tf_prefix:=\"{options.tf_prefix}\"", kinematics])
+    xacro = PathJoinSubstitution([FindPackageShare("ur_description"), "urdf", "ur.urdf.xacro"])
+    return Command(["xacro ", xacro, " ", xacro_arguments(values, options)])

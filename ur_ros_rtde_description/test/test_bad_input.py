@@ -3,6 +3,7 @@
 import math
 import os
 import pathlib
+import shlex
 import subprocess
 import sys
 
@@ -10,7 +11,7 @@ import pytest
 from helpers import calibration, write_calibration
 from ur_ros_rtde_description.errors import DescriptionError
 from ur_ros_rtde_description.kinematics import nominal_origins
-from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names, description_options, is_true
+from ur_ros_rtde_description.launch_arguments import ARGUMENTS, check_names, description_options, is_true, xacro_arguments
 from ur_ros_rtde_description.models import find_model, models
 from ur_ros_rtde_description.options import read_options
 from ur_ros_rtde_description.program import main
@@ -175,6 +176,17 @@ def test_launch_arguments_become_options():
     options = description_options(launch_values(tf_prefix="left_", xyz="0 -0.5 8e-1", parent="table"))
     assert (options.tf_prefix, options.parent, options.mount.xyz) == ("left_", "table", (0.0, -0.5, 0.8))
     assert is_true("launch_rviz", launch_values()) and not is_true("meshes", launch_values())
+
+
+def test_xacro_reads_the_calibration_of_a_relative_path(tmp_path, monkeypatch):
+    """xacro looks for a relative path in the folder of ur.urdf.xacro."""
+    monkeypatch.chdir(tmp_path)
+    pathlib.Path(write_calibration(tmp_path, nominal("ur5e"))).rename("my robot.yaml")
+    values = launch_values(kinematics_params_file="my robot.yaml", tf_prefix="left_", meshes="true")
+    assert shlex.split(xacro_arguments(values, description_options(values))) == [
+        "name:=ur5e", "ur_type:=ur5e", "tf_prefix:=left_", f"kinematics_params:={tmp_path}/my robot.yaml"]
+    values = launch_values(meshes="true")
+    assert shlex.split(xacro_arguments(values, description_options(values))) == ["name:=ur5e", "ur_type:=ur5e", "tf_prefix:="]
 
 
 @pytest.mark.parametrize("name, value", [("xyz", "0 0"), ("rpy", "0 0 x"), ("meshes", "yes"), ("ur_type", "ur6"), ("tf_prefix", "a b")])

@@ -1,5 +1,7 @@
 """Arguments of view.launch.py. Does not depend on launch."""
 
+import os
+import shlex
 from dataclasses import dataclass
 from typing import Dict, Iterable, Tuple
 
@@ -49,6 +51,13 @@ def description_options(values: Dict[str, str]) -> Options:
     """Returns the options of the description from the values of the launch arguments."""
     return read_options(values["ur_type"], values["tf_prefix"], values["kinematics_params_file"], values["parent"],
                         _numbers("xyz", values), _numbers("rpy", values), values["tool"])
+
+
+def xacro_arguments(values: Dict[str, str], options: Options) -> str:
+    """Returns the arguments of ur.urdf.xacro of ur_description, which would look for a relative path in its own folder."""
+    file, name = values["kinematics_params_file"], options.model.name
+    kinematics = f" kinematics_params:={shlex.quote(os.path.abspath(file))}" if file else ""
+    return f"name:={name} ur_type:={name} tf_prefix:=\"{options.tf_prefix}\"{kinematics}"
 
 
 def _numbers(name: str, values: Dict[str, str]) -> Tuple[float, ...]:

@@ -71,6 +71,13 @@ def test_an_invalid_argument_of_two_robots_is_rejected_with_one_message(given, m
     assert len(errors(printed)) == 1 and message in errors(printed)[0], printed
 
 
+def test_moveit_rejects_a_calibration_that_does_not_exist():
+    code, printed = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true", "kinematics_params_file:=none.yaml")
+    assert code != 0
+    assert len(errors(printed)) == 1 and 'kinematics_params_file is "none.yaml": the file does not exist' in errors(printed)[0], printed
+    assert "process started" not in printed
+
+
 def test_moveit_reports_missing_packages():
     code, printed = ros2("launch", "ur_ros_rtde", "moveit.launch.py", "ur_type:=ur5e", "sim:=true")
     if "needs packages that are not installed" not in printed:

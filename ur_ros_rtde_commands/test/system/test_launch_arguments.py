@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shlex
 
 import pytest
 import rclpy
@@ -11,7 +12,18 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
 from support import wait_for
 from ur_ros_rtde_launch import launch_arguments
-from ur_ros_rtde_launch.launch_arguments import DRIVER, NODES, PARAMETERS, TWO_ROBOTS, ArgumentError, check_differ, check_name, to_values
+from ur_ros_rtde_launch.launch_arguments import (
+    DRIVER,
+    NODES,
+    PARAMETERS,
+    TWO_ROBOTS,
+    ArgumentError,
+    check_differ,
+    check_file,
+    check_name,
+    to_values,
+    xacro_arguments,
+)
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "ur_ros_rtde" / "config" / "driver.yaml"
 ROS_PARAMETERS = {"use_sim_time"}
@@ -182,6 +194,24 @@ def test_an_invalid_value_is_rejected_with_the_valid_values(name, text, message)
     with pytest.raises(ArgumentError) as error:
         to_values(DRIVER, {name: text})
     assert message in str(error.value)
+
+
+def test_xacro_reads_the_calibration_of_a_relative_path(tmp_path, monkeypatch):
+    """xacro looks for a relative path in the folder of ur.urdf.xacro."""
+    monkeypatch.chdir(tmp_path)
+    assert shlex.split(xacro_arguments("ur5e", "my robot.yaml")) == [
+        "name:=ur5e", "ur_type:=ur5e", f"kinematics_params:={tmp_path}/my robot.yaml"]
+    assert xacro_arguments("ur5e", "") == "name:=ur5e ur_type:=ur5e"
+
+
+def test_a_file_that_does_not_exist_is_rejected(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    pathlib.Path("mine.yaml").touch()
+    for path in ("", "mine.yaml", str(tmp_path / "mine.yaml")):
+        check_file("kinematics_params_file", path)
+    for path in ("none.yaml", str(tmp_path)):
+        with pytest.raises(ArgumentError, match=f'kinematics_params_file is "{path}": the file does not exist'):
+            check_file("kinematics_params_file", path)
 
 
 def test_values_have_the_type_of_the_parameter():
