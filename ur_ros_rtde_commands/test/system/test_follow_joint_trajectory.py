@@ -1,5 +1,6 @@
 """Tests of follow_joint_trajectory, the action that MoveIt uses."""
 
+import math
 import pathlib
 
 import pytest
@@ -202,6 +203,13 @@ def test_a_distant_start_and_invalid_points_are_rejected(robot):
     assert "at the latest" in rejection_message(robot, send(robot, point(0.0, HOME), point(1_800_000_000.0, HOME)))
     assert "7" in rejection_message(robot, send(robot, point(0.0, HOME), point(1.0, home_plus(7.0))))
     assert "rest" in rejection_message(robot, send(robot, point(0.0, HOME, [0.0] * 6), point(1.0, HOME, [1.0] * 6)))
+
+
+def test_a_start_that_is_one_turn_off_is_rejected(robot):
+    """As MoveIt may plan for the continuous wrist 3 of a UR3e."""
+    turned = [*HOME[:5], HOME[5] - 2.0 * math.pi]
+    message = rejection_message(robot, send(robot, point(0.0, turned), point(1.0, turned)))
+    assert "wrist_3_joint at -6.28" in message and "away" in message
 
 
 def test_a_trajectory_too_fast_for_the_arm_is_aborted_before_it_moves(robot):
