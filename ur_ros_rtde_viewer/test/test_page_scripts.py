@@ -81,6 +81,18 @@ def test_no_notice_is_shown_while_the_viewer_answers(tab):
     assert tab.page.evaluate("window.notices") == []
 
 
+def test_no_notice_is_shown_while_the_panel_beside_the_scene_is_collapsed(tab, viewer):
+    main_panel = viewer.viewer.server.gui.main_panel
+    main_panel.minimize()
+    tab.page.get_by_role("tab", name="State").wait_for(state="hidden")
+    tab.page.evaluate(NOTE_NOTICES)
+    tab.button("STOP").click()
+    tab.page.wait_for_timeout(1e3 * (LOSS_TIMEOUT + ANSWER_TIMEOUT))
+    main_panel.expand()
+    tab.page.get_by_role("tab", name="State").wait_for()
+    assert tab.page.evaluate("window.notices") == []
+
+
 def test_a_connection_that_is_lost_without_a_message_is_reported(remote_tab, proxy):
     proxy.freeze()
     remote_tab.wait_for_text(NO_CONNECTION)
