@@ -20,6 +20,7 @@ REJECTION_TIMEOUT = 2.0  # s, for the reason of a rejected goal
 REJECTIONS = 100  # messages to keep: those of all clients are received
 DISCOVERY_TIME = 1.0  # s, after which a name that was not discovered counts as unknown
 POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
+OPEN_PERIOD = 0.5  # s, between two checks of whether the connection is open
 
 
 def until(condition: Callable[[], T], timeout: float, period: float = POLL_PERIOD) -> T | None:
@@ -86,11 +87,19 @@ class Connection:
         self._clients: dict[str, Any] = {}  # of actions and services, by full name
         self.types: dict[str, str] = {}  # of the actions of which there are clients
         self._rejections: dict[bytes, Any] = {}
+        self._was_closed = False  # by close()
         self._subscribe_rejections()
-        self._thread = threading.Thread(target=self._executor.spin, name="ur_ros_rtde", daemon=True)
+        self._thread = threading.Thread(target=self._spin, name="ur_ros_rtde", daemon=True)
         self._thread.start()
 
+    def _spin(self) -> None:
+        from rclpy.executors import ExternalShutdownException
+
+        with contextlib.suppress(ExternalShutdownException):
+            self._executor.spin()
+
     def close(self) -> None:
+        self._was_closed = True
         self._executor.shutdown()
         self._thread.join(REQUEST_TIMEOUT)
         self.node.destroy_node()
@@ -101,8 +110,38 @@ class Connection:
         return bool(self._context.ok()) and self._thread.is_alive()
 
     def check_open(self) -> None:
-        if not self.is_open:
+        """Raises RobotError with the cause if the connection is closed."""
+        if self.is_open:
+            return
+        if self._was_closed:
             raise RobotError("the Robot is closed")
+        if not self._context.ok():
+            raise RobotError("the Robot is closed: a signal handler of rclpy.init() has shut down ROS in this program")
+        raise RobotError("the Robot is closed: the thread of its node has ended")
+
+    def wait(self, future: "concurrent.futures.Future[Any]", timeout: float) -> bool:
+        """Returns whether a future of the executor's thread is done within `timeout` s. Raises RobotError if the connection is closed."""
+        end = time.monotonic() + timeout
+        while True:
+            rest = end - time.monotonic()
+            if concurrent.futures.wait([future], max(0.0, min(OPEN_PERIOD, rest))).done:
+                return True
+            self.check_open()
+            if rest <= 0.0:
+                return False
+
+    def ask(self, question: Callable[[], T]) -> T:
+        """Returns the answer to a question about the ROS graph. Raises RobotError if the connection is closed."""
+        self.check_open()
+        try:
+            return question()
+        except RuntimeError:  # of rclpy: ROS was shut down in the meantime
+            self.check_open()
+            raise
+
+    def until(self, condition: Callable[[], T], timeout: float) -> T | None:
+        """As until(), for a condition in the ROS graph. Raises RobotError if the connection is closed."""
+        return until(lambda: self.ask(condition), timeout)
 
     def in_executor(self, function: Callable[[], T]) -> T:
         """Calls `function` in the executor's thread and returns its result.
@@ -120,10 +159,9 @@ class Connection:
                 done.set_exception(error)
 
         self._executor.create_task(call)
-        try:
-            return done.result(REQUEST_TIMEOUT)
-        except concurrent.futures.TimeoutError:
-            raise Timeout(f"the node could not send a request within {REQUEST_TIMEOUT:g} s") from None
+        if not self.wait(done, REQUEST_TIMEOUT):
+            raise Timeout(f"the node could not send a request within {REQUEST_TIMEOUT:g} s")
+        return done.result()
 
     # Actions
 
@@ -139,7 +177,7 @@ class Connection:
         """Returns the type of an action: that of its server, which may differ from the installed one."""
         known = actions.type_of_plugin(name)
         timeout = self.timeout if known else self._created_at + DISCOVERY_TIME - time.monotonic()
-        found = until(lambda: self.served().get(name), timeout)
+        found = self.until(lambda: self.served().get(name), timeout)
         if found is None:
             raise self._not_served(name, known)
         return found
@@ -155,7 +193,7 @@ class Connection:
             action = load(name, self.types[name])
             self._clients[name] = self.in_executor(lambda: ActionClient(self.node, action, name))
         client = self._clients[name]
-        if not until(client.server_is_ready, self.timeout):
+        if not self.until(client.server_is_ready, self.timeout):
             raise self._not_served(name, name)
         return client
 
@@ -190,7 +228,7 @@ class Connection:
     # Services and topics
 
     def call(self, kind: str, name: str, **request: Any) -> Any:
-        """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails."""
+        """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails or the connection is closed."""
         service = interface(kind)
         response = self.request(service, name, service.Request(**request), self.timeout)
         if not response.success:
@@ -203,15 +241,14 @@ class Connection:
         if name not in self._clients:
             self._clients[name] = self.in_executor(lambda: self.node.create_client(service, name))
         client = self._clients[name]
-        if not until(client.service_is_ready, self.timeout):
+        if not self.until(client.service_is_ready, self.timeout):
             raise NoDriver(f"no driver offers the service {self.full_name(name)} within {self.timeout:g} s: start the driver, or check "
                            f"the namespace and ROS_DOMAIN_ID ({os.environ.get('ROS_DOMAIN_ID', '0')})")
         done: concurrent.futures.Future[Any] = concurrent.futures.Future()
         self.in_executor(lambda: client.call_async(request).add_done_callback(lambda future: done.set_result(future.result())))
-        try:
-            return done.result(timeout)
-        except concurrent.futures.TimeoutError:
-            raise NoDriver(f"the service {self.full_name(name)} did not respond within {timeout:g} s") from None
+        if not self.wait(done, timeout):
+            raise NoDriver(f"the service {self.full_name(name)} did not respond within {timeout:g} s")
+        return done.result()
 
     def subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], latched: bool = False) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile

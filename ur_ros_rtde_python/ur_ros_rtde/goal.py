@@ -59,13 +59,12 @@ class Goal:
             self._client = self._connection.action_client(self.name)
             self._queued = True
             self._connection.in_executor(self._send)
-            handle = self._answered.result(self._connection.timeout)
-        except concurrent.futures.TimeoutError:
-            self.abandon()
-            raise NoDriver(f"{self.name}: the driver did not answer within {self._connection.timeout:g} s") from None
+            if not self._connection.wait(self._answered, self._connection.timeout):
+                raise NoDriver(f"{self.name}: the driver did not answer within {self._connection.timeout:g} s")
         except BaseException:
             self.abandon()
             raise
+        handle = self._answered.result()
         if not handle.accepted:
             rejection = self._connection.rejection(bytes(handle.goal_id.uuid))
             raise Rejected(self.name, getattr(rejection, "error_code", 1),
@@ -73,7 +72,7 @@ class Goal:
         return self
 
     def result(self, timeout: float | None = None, on_progress: Progress | None = None) -> Any:
-        """Waits and returns the result message. Raises CommandFailed, NoDriver or Timeout.
+        """Waits and returns the result message. Raises CommandFailed, NoDriver or Timeout, and RobotError if the Robot is closed.
 
         `on_progress` is called with each feedback message. Any exception, also one of `on_progress`, and Ctrl-C cancel the goal; it
         propagates when the arm is at standstill. The same applies after `timeout` s.
@@ -166,7 +165,7 @@ class Goal:
     # In the thread of the caller
 
     def _wait(self, timeout: float | None, on_progress: Progress | None) -> bool:
-        """Returns whether the goal has ended within `timeout` s. Raises NoDriver."""
+        """Returns whether the goal has ended within `timeout` s. Raises NoDriver, and RobotError if the connection is closed."""
         end = None if timeout is None else time.monotonic() + timeout
         while True:
             with self._changed:
@@ -182,8 +181,10 @@ class Goal:
             self._check_driver()
 
     def _check_driver(self) -> None:
-        """Raises NoDriver if the driver has been missing for a while, or the connection is closed."""
-        is_lost = not self._connection.is_open or (self._driver is not None and self._driver.is_gone())
+        """Raises NoDriver if the driver has been missing for a while, and RobotError if the connection is closed."""
+        if self.is_finished:
+            return
+        is_lost = self._driver is not None and self._connection.ask(self._driver.is_gone)
         if is_lost and not self.is_finished:
             raise NoDriver(loss(self.name))
 

@@ -178,14 +178,16 @@ class State:
                 del parts[min(parts)]
 
         self._connection.check_open()
-        subscriptions = [self._connection.subscribe(kind, topic, functools.partial(add, topic))
-                         for topic, kind in topics.items()]
+        subscriptions: list[Any] = []
         try:
+            for topic, kind in topics.items():
+                subscriptions.append(self._connection.subscribe(kind, topic, functools.partial(add, topic)))
             timeout = self._connection.timeout
             while True:
                 try:
                     sample = complete.get(timeout=timeout)
                 except queue.Empty:
+                    self._connection.check_open()
                     raise NoDriver(f"no messages on {', '.join(topics)}: {self._reason()}") from None
                 timeout = STREAM_TIMEOUT
                 while newest and sample is not None and not complete.empty():
@@ -229,7 +231,7 @@ class State:
         if topic not in self._subscribed:
             self._subscribed.add(topic)
             self._connection.subscribe(kind, topic, store, latched=True)
-        found = until(newest, self._connection.timeout)
+        found = self._connection.until(newest, self._connection.timeout)
         if found is None:
             raise NoDriver(f"no message on {self._connection.full_name(topic)} within {self._connection.timeout:g} s: start the driver")
         return found[0]

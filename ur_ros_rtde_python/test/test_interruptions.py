@@ -1,0 +1,64 @@
+"""Interruptions between the requests of a Robot, with a driver whose answers are delayed."""
+
+import contextlib
+import signal
+import sys
+
+import pytest
+from fake_driver import NAMESPACE, FakeDriver
+from programs import Process
+from support import HOME, TIMEOUT_FACTOR, wait_for
+from ur_ros_rtde import Robot
+
+
+@pytest.fixture
+def fake():
+    with contextlib.closing(FakeDriver()) as driver:
+        yield driver
+
+
+@pytest.fixture
+def arm(fake):
+    with Robot(NAMESPACE, timeout=TIMEOUT_FACTOR * 20.0) as robot:
+        yield robot
+
+
+@contextlib.contextmanager
+def signaled_program(code):
+    """A program with rclpy.init() that receives SIGINT when it has printed "running"."""
+    program = Process([sys.executable, "-c", f"import threading, time, rclpy\nfrom ur_ros_rtde import *\nrclpy.init()\n{code}"])
+    try:
+        program.wait_for_output("running", 30.0)
+        program.signal(signal.SIGINT)
+        yield program
+    finally:
+        program.kill()
+
+
+def test_a_connection_that_a_signal_has_closed_is_no_lost_driver(fake):
+    code = f"""
+def wait():
+    for use in (goal.result, lambda: arm.state.joint_positions, arm.stop):
+        try:
+            use()
+        except RobotError as error:
+            print(type(error).__name__, error, flush=True)
+    print("end", flush=True)
+
+node = rclpy.create_node("own_node")
+arm = Robot("{NAMESPACE}", timeout=20.0)
+goal = arm.start.move_j({HOME})
+worker = threading.Thread(target=wait)
+worker.start()
+print("running", flush=True)
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    worker.join()
+"""
+    with signaled_program(code) as program:
+        program.wait_for_output("end", 30.0)
+        closed = "RobotError the Robot is closed: a signal handler of rclpy.init() has shut down ROS in this program"
+        assert [line for line in program.lines if line.startswith(("RobotError", "NoDriver"))] == [closed] * 3
+        assert "Traceback" not in program.output()
+        wait_for(lambda: "cancel move_j" in fake.received, 10.0, "the end of the goal")
