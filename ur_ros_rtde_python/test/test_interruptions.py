@@ -1,6 +1,7 @@
 """Interruptions between the requests of a Robot, with a driver whose answers are delayed."""
 
 import contextlib
+import re
 import signal
 import sys
 
@@ -62,3 +63,25 @@ except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         assert [line for line in program.lines if line.startswith(("RobotError", "NoDriver"))] == [closed] * 3
         assert "Traceback" not in program.output()
         wait_for(lambda: "cancel move_j" in fake.received, 10.0, "the end of the goal")
+
+
+@pytest.mark.parametrize("wait", ["rclpy.spin(rclpy.create_node('own_node'))", "time.sleep(30.0)"], ids=["spin", "sleep"])
+def test_a_signal_ends_a_recording_of_a_program_that_uses_rclpy_itself(fake, wait):
+    code = f"""
+try:
+    with Robot("{NAMESPACE}", timeout=20.0) as arm, arm.record("run.csv"):
+        print("running", flush=True)
+        {wait}
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    print("end", flush=True)
+"""
+    with signaled_program(code) as program:
+        program.wait_for_output("end", 30.0)
+        assert fake.received[:2] == ["start_recording", "stop_recording"] and "not confirmed" not in program.output()
+
+
+def test_a_recording_that_is_not_stopped_is_reported_beside_the_exception(fake, arm, caplog):
+    fake.failures["stop_recording"] = "the disk is full"
+    with pytest.raises(KeyError), arm.record("run.csv"):
+        raise KeyError
+    assert re.search("the end of the recording .*run.csv is not confirmed: the disk is full", caplog.text)

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import contextlib
+import logging
 import os
 import threading
 import time
@@ -65,6 +66,18 @@ def own_signals() -> Iterator[None]:
         install_signal_handlers(installed)
 
 
+@contextlib.contextmanager
+def ending(what: str) -> Iterator[None]:
+    """For an end of `what` while an exception propagates: an error of the end is only logged. An interruption propagates, too."""
+    try:
+        yield
+    except BaseException as error:
+        reason = str(error) or type(error).__name__
+        logging.getLogger("ur_ros_rtde").error("the end of %s is not confirmed: %s", what, reason)  # on stderr by default
+        if not isinstance(error, RobotError):
+            raise
+
+
 class Connection:
     """`timeout` limits the waits for the driver and for its responses, `result_timeout` those for results, in s."""
 
@@ -118,6 +131,19 @@ class Connection:
         if not self._context.ok():
             raise RobotError("the Robot is closed: a signal handler of rclpy.init() has shut down ROS in this program")
         raise RobotError("the Robot is closed: the thread of its node has ended")
+
+    def over_open_connection(self, function: "Callable[[Connection], T]") -> T:
+        """Calls `function` with this connection, or with a new one if this one is closed before or in the meantime: by the signal handlers
+        of rclpy.init(), for example while the program was in rclpy.spin()."""
+        with own_signals():
+            if self.is_open:
+                try:
+                    return function(self)
+                except RobotError:
+                    if self.is_open:
+                        raise
+            with contextlib.closing(Connection(self.namespace, self.timeout, self.result_timeout)) as fresh:
+                return function(fresh)
 
     def wait(self, future: "concurrent.futures.Future[Any]", timeout: float) -> bool:
         """Returns whether a future of the executor's thread is done within `timeout` s. Raises RobotError if the connection is closed."""

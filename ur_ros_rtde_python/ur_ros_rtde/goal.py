@@ -104,25 +104,24 @@ class Goal:
             if self._queued and not self.is_finished and not self._abandoned:
                 self._abandoned = True
                 with contextlib.suppress(RobotError):
-                    if self._connection.is_open:
-                        self.cancel()
-                    else:
-                        self._cancel_over_another_connection()
+                    self._connection.over_open_connection(self._cancel_over)
         finally:
             self._on_finished(self)
 
-    def _cancel_over_another_connection(self) -> None:
-        """The handlers of rclpy.init() have shut down that of the Robot, for example while the program was in rclpy.spin()."""
+    def _cancel_over(self, connection: Connection) -> None:
+        """Cancels the goal and waits for its end over the connection of the Robot, or over another one."""
+        if connection is self._connection:
+            self.cancel()
+            return
         if self._handle is None:
             return
         action, goal_id = load(self.name, self._connection.types[self.name]), self._handle.goal_id
         cancel = interface("action_msgs/srv/CancelGoal")
         request = cancel.Request()
         request.goal_info.goal_id = goal_id
-        with contextlib.closing(Connection(self._connection.namespace, self._connection.timeout, CANCEL_TIMEOUT)) as fresh:
-            fresh.request(cancel, f"{self.name}/_action/cancel_goal", request, fresh.timeout)
-            result = action.Impl.GetResultService
-            fresh.request(result, f"{self.name}/_action/get_result", result.Request(goal_id=goal_id), CANCEL_TIMEOUT)
+        connection.request(cancel, f"{self.name}/_action/cancel_goal", request, connection.timeout)
+        result = action.Impl.GetResultService
+        connection.request(result, f"{self.name}/_action/get_result", result.Request(goal_id=goal_id), CANCEL_TIMEOUT)
 
     def __await__(self) -> Generator[Any, None, Any]:
         return self._await().__await__()

@@ -1,5 +1,6 @@
 """Recordings of RTDE outputs as numpy arrays and pandas tables."""
 
+import contextlib
 import importlib
 import os
 import pathlib
@@ -10,8 +11,7 @@ from typing import Any
 
 import numpy
 
-from .connection import Connection
-from .errors import RobotError
+from .connection import Connection, ending
 
 
 def read_recording(file: str | os.PathLike[str]) -> Any:
@@ -51,12 +51,16 @@ class Recording:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        try:
-            response = self._connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording")
-        except RobotError:
-            if kind is None:
-                raise
-            return
+        with contextlib.nullcontext() if kind is None else self._ending():
+            self._stop()
+
+    def _ending(self) -> contextlib.AbstractContextManager[None]:
+        return ending(f"the recording {self.file}")
+
+    def _stop(self) -> None:
+        """Stops the recording, over another connection if that of the Robot is closed."""
+        response = self._connection.over_open_connection(
+            lambda connection: connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording"))
         self.rows, self.lost = response.rows, response.lost
 
     def read(self) -> Any:
