@@ -1,15 +1,18 @@
 """Interruptions between the requests of a Robot, with a driver whose answers are delayed."""
 
 import contextlib
+import os
 import re
 import signal
 import sys
+import time
 
 import pytest
 from fake_driver import NAMESPACE, FakeDriver
 from programs import Process
 from support import HOME, TIMEOUT_FACTOR, wait_for
-from ur_ros_rtde import Robot
+from ur_ros_rtde import NoDriver, Robot
+from ur_ros_rtde.connection import Connection
 
 
 @pytest.fixture
@@ -24,10 +27,20 @@ def arm(fake):
         yield robot
 
 
+HEADER = """
+import threading
+import time
+import rclpy
+from ur_ros_rtde import Robot, RobotError
+rclpy.init()
+node = rclpy.create_node("own_node")
+"""
+
+
 @contextlib.contextmanager
 def signaled_program(code):
     """A program with rclpy.init() that receives SIGINT when it has printed "running"."""
-    program = Process([sys.executable, "-c", f"import threading, time, rclpy\nfrom ur_ros_rtde import *\nrclpy.init()\n{code}"])
+    program = Process([sys.executable, "-c", f"{HEADER}{code}"])
     try:
         program.wait_for_output("running", 30.0)
         program.signal(signal.SIGINT)
@@ -46,15 +59,14 @@ def wait():
             print(type(error).__name__, error, flush=True)
     print("end", flush=True)
 
-node = rclpy.create_node("own_node")
 arm = Robot("{NAMESPACE}", timeout=20.0)
 goal = arm.start.move_j({HOME})
 worker = threading.Thread(target=wait)
 worker.start()
-print("running", flush=True)
 try:
+    print("running", flush=True)
     rclpy.spin(node)
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+except BaseException:  # KeyboardInterrupt, or an error of rclpy.spin()
     worker.join()
 """
     with signaled_program(code) as program:
@@ -65,14 +77,14 @@ except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         wait_for(lambda: "cancel move_j" in fake.received, 10.0, "the end of the goal")
 
 
-@pytest.mark.parametrize("wait", ["rclpy.spin(rclpy.create_node('own_node'))", "time.sleep(30.0)"], ids=["spin", "sleep"])
+@pytest.mark.parametrize("wait", ["rclpy.spin(node)", "time.sleep(30.0)"], ids=["spin", "sleep"])
 def test_a_signal_ends_a_recording_of_a_program_that_uses_rclpy_itself(fake, wait):
     code = f"""
 try:
     with Robot("{NAMESPACE}", timeout=20.0) as arm, arm.record("run.csv"):
         print("running", flush=True)
         {wait}
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+except BaseException:  # KeyboardInterrupt, or an error of rclpy.spin()
     print("end", flush=True)
 """
     with signaled_program(code) as program:
@@ -85,3 +97,38 @@ def test_a_recording_that_is_not_stopped_is_reported_beside_the_exception(fake, 
     with pytest.raises(KeyError), arm.record("run.csv"):
         raise KeyError
     assert re.search("the end of the recording .*run.csv is not confirmed: the disk is full", caplog.text)
+
+
+def interrupt():
+    """As Ctrl-C, while the main thread waits for an answer of the driver."""
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.parametrize("failures, expected", [({}, ["start_recording", "stop_recording"]),
+                                                ({"start_recording": "another recording runs"}, ["start_recording"])])
+def test_an_interrupted_start_leaves_no_recording_of_this_program_running(fake, arm, failures, expected):
+    fake.failures, fake.events["start_recording"] = failures, interrupt
+    with pytest.raises(KeyboardInterrupt), arm.record("run.csv"):
+        pytest.fail("the block was executed")
+    assert fake.received == expected
+
+
+def test_a_recording_that_starts_late_is_stopped(fake):
+    fake.events["start_recording"] = lambda: time.sleep(1.0)
+    with Robot(NAMESPACE, timeout=0.9) as robot, pytest.raises(NoDriver, match="did not respond"), robot.record("run.csv"):
+        pytest.fail("the block was executed")
+    assert fake.received == ["start_recording", "stop_recording"]
+
+
+def test_a_recording_whose_end_is_interrupted_is_stopped(fake, arm, monkeypatch):
+    def request(self, service, name, *others):
+        if name == "stop_recording" and not interrupted:
+            interrupted.append(name)
+            raise KeyboardInterrupt  # before it is sent
+        return send(self, service, name, *others)
+
+    interrupted, send = [], Connection.request
+    monkeypatch.setattr(Connection, "request", request)
+    with pytest.raises(KeyboardInterrupt), arm.record("run.csv"):
+        pass
+    assert interrupted and fake.received == ["start_recording", "stop_recording"]

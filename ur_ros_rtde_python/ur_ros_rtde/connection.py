@@ -15,6 +15,7 @@ from .conversions import interface
 from .errors import NoDriver, RobotError, Timeout, UnknownCommand
 
 T = TypeVar("T")
+Answer = concurrent.futures.Future[Any]  # of a request
 
 REQUEST_TIMEOUT = 10.0  # s, to send a request
 REJECTION_TIMEOUT = 2.0  # s, for the reason of a rejected goal
@@ -145,7 +146,7 @@ class Connection:
             with contextlib.closing(Connection(self.namespace, self.timeout, self.result_timeout)) as fresh:
                 return function(fresh)
 
-    def wait(self, future: "concurrent.futures.Future[Any]", timeout: float) -> bool:
+    def wait(self, future: Answer, timeout: float) -> bool:
         """Returns whether a future of the executor's thread is done within `timeout` s. Raises RobotError if the connection is closed."""
         end = time.monotonic() + timeout
         while True:
@@ -253,16 +254,19 @@ class Connection:
 
     # Services and topics
 
-    def call(self, kind: str, name: str, **request: Any) -> Any:
-        """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails or the connection is closed."""
+    def call(self, kind: str, name: str, done: Answer | None = None, /, **request: Any) -> Any:
+        """Returns the response of a service. Raises NoDriver, or RobotError with the reason if it fails or the connection is closed.
+
+        `done` receives the response, even after an exception. It can be canceled as long as the request was not sent.
+        """
         service = interface(kind)
-        response = self.request(service, name, service.Request(**request), self.timeout)
+        response = self.request(service, name, service.Request(**request), self.timeout, done)
         if not response.success:
             raise RobotError(response.message)
         return response
 
-    def request(self, service: Any, name: str, request: Any, timeout: float) -> Any:
-        """Returns the response of a service of this class. Raises NoDriver after `timeout` s without one."""
+    def request(self, service: Any, name: str, request: Any, timeout: float, done: Answer | None = None) -> Any:
+        """Returns the response of a service of this class. Raises NoDriver after `timeout` s without one. `done`: see call()."""
         self.check_open()
         if name not in self._clients:
             self._clients[name] = self.in_executor(lambda: self.node.create_client(service, name))
@@ -270,11 +274,12 @@ class Connection:
         if not self.until(client.service_is_ready, self.timeout):
             raise NoDriver(f"no driver offers the service {self.full_name(name)} within {self.timeout:g} s: start the driver, or check "
                            f"the namespace and ROS_DOMAIN_ID ({os.environ.get('ROS_DOMAIN_ID', '0')})")
-        done: concurrent.futures.Future[Any] = concurrent.futures.Future()
-        self.in_executor(lambda: client.call_async(request).add_done_callback(lambda future: done.set_result(future.result())))
-        if not self.wait(done, timeout):
+        answer: Answer = Answer() if done is None else done
+        answer.set_running_or_notify_cancel()  # it cannot be canceled from here on
+        self.in_executor(lambda: client.call_async(request).add_done_callback(lambda future: answer.set_result(future.result())))
+        if not self.wait(answer, timeout):
             raise NoDriver(f"the service {self.full_name(name)} did not respond within {timeout:g} s")
-        return done.result()
+        return answer.result()
 
     def subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], latched: bool = False) -> Any:
         from rclpy.qos import DurabilityPolicy, QoSProfile

@@ -11,7 +11,10 @@ from typing import Any
 
 import numpy
 
-from .connection import Connection, ending
+from .connection import Answer, Connection, ending, own_signals
+from .errors import NoDriver
+
+ANSWER_TIMEOUT = 10.0  # s, for the answer to an interrupted start
 
 
 def read_recording(file: str | os.PathLike[str]) -> Any:
@@ -46,9 +49,25 @@ class Recording:
         self.lost = 0  # number of packages that are missing in the file
 
     def __enter__(self) -> "Recording":
-        self._connection.call("ur_ros_rtde_msgs/srv/StartRecording", "start_recording", filename=str(self.file), fields=self._fields,
-                              frequency=float(self._frequency))
-        return self
+        done = Answer()
+        try:
+            with own_signals():
+                self._connection.call("ur_ros_rtde_msgs/srv/StartRecording", "start_recording", done, filename=str(self.file),
+                                      fields=self._fields, frequency=float(self._frequency))
+            return self
+        except BaseException:
+            with own_signals(), self._ending():
+                self._stop_if_started(done)
+            raise
+
+    def _stop_if_started(self, done: Answer) -> None:
+        """After an interrupted start. If the start was rejected, a recording may be that of another client."""
+        if done.cancel():
+            return
+        if not self._connection.wait(done, ANSWER_TIMEOUT):
+            raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s")
+        if done.result().success:
+            self._stop()
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         with contextlib.nullcontext() if kind is None else self._ending():
@@ -59,8 +78,20 @@ class Recording:
 
     def _stop(self) -> None:
         """Stops the recording, over another connection if that of the Robot is closed."""
-        response = self._connection.over_open_connection(
-            lambda connection: connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording"))
+        done = Answer()
+
+        def request(connection: Connection) -> Any:
+            nonlocal done
+            done = Answer()
+            return connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording", done)
+
+        try:
+            response = self._connection.over_open_connection(request)
+        except (KeyboardInterrupt, SystemExit):
+            if done.cancel():  # the request was not sent
+                with self._ending():
+                    self._connection.over_open_connection(request)
+            raise
         self.rows, self.lost = response.rows, response.lost
 
     def read(self) -> Any:
