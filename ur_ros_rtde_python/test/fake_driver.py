@@ -3,7 +3,7 @@
 import time
 
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionServer, CancelResponse
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.task import Future
 from ros_client import Client
 
@@ -18,10 +18,10 @@ DELAY = 0.3  # s, from an event in the driver to its answer
 
 class FakeDriver:
     """`received`: names of the requests, and "cancel NAME". `events`: function by name, called before a delayed answer; after a
-    force_mode_start has succeeded. `failures`: message by name of what fails."""
+    force_mode_start has succeeded. `failures`: message by name of what fails. `rejected`: names of actions."""
 
     def __init__(self):
-        self.received, self.events, self.failures = [], {}, {}
+        self.received, self.events, self.failures, self.rejected = [], {}, {}, []
         self._client = Client(NAMESPACE, name="fake_driver")
         node = self._client.node
         node.create_service(StartRecording, "start_recording", lambda _, response: self._respond("start_recording", response))
@@ -49,6 +49,9 @@ class FakeDriver:
     def _server(self, name, kind):
         ended = Future()
 
+        def accept(_):
+            return GoalResponse.REJECT if name in self.rejected else GoalResponse.ACCEPT
+
         def cancel(_):
             self.received.append(f"cancel {name}")
             ended.set_result(True)
@@ -66,4 +69,4 @@ class FakeDriver:
             self._happen(name)
             return kind.Result(success=handle.status == GoalStatus.STATUS_SUCCEEDED, message=self.failures.get(name, ""))
 
-        return ActionServer(self._client.node, kind, name, execute, cancel_callback=cancel)
+        return ActionServer(self._client.node, kind, name, execute, goal_callback=accept, cancel_callback=cancel)

@@ -11,7 +11,7 @@ import pytest
 from fake_driver import NAMESPACE, FakeDriver
 from programs import Process
 from support import HOME, TIMEOUT_FACTOR, wait_for
-from ur_ros_rtde import NoDriver, Robot
+from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, goal
 from ur_ros_rtde.connection import Connection
 
 
@@ -132,3 +132,76 @@ def test_a_recording_whose_end_is_interrupted_is_stopped(fake, arm, monkeypatch)
     with pytest.raises(KeyboardInterrupt), arm.record("run.csv"):
         pass
     assert interrupted and fake.received == ["start_recording", "stop_recording"]
+
+
+@pytest.mark.parametrize("event, timeout, error", [(interrupt, None, KeyboardInterrupt), (lambda: time.sleep(1.0), 0.5, Timeout)])
+def test_an_interrupted_start_of_force_mode_ends_it(fake, arm, event, timeout, error):
+    fake.events["force_mode_start"] = event
+    with pytest.raises(error), arm.modes.force_mode(result_timeout=timeout):
+        pytest.fail("the block was executed")
+    assert fake.received[0] == "force_mode_start" and fake.received[-1] == "force_mode_stop"
+
+
+def test_a_start_of_force_mode_that_fails_leaves_the_mode_of_another_client_on(fake, arm):
+    fake.failures["force_mode_start"] = "the robot is in a protective stop"
+    with pytest.raises(CommandFailed, match="protective stop"), arm.modes.force_mode():
+        pytest.fail("the block was executed")
+    fake.rejected.append("force_mode_start")
+    with pytest.raises(Rejected), arm.modes.force_mode():
+        pytest.fail("the block was executed")
+    assert fake.received == ["force_mode_start"]
+
+
+def test_force_mode_whose_end_is_interrupted_is_ended(fake, arm):
+    fake.events["force_mode_stop"] = interrupt
+    with pytest.raises(KeyboardInterrupt), arm.modes.force_mode():
+        pass
+    assert [name for name in fake.received if "cancel" not in name] == ["force_mode_start", "force_mode_stop", "force_mode_stop"]
+
+
+def test_force_mode_that_is_not_ended_is_reported_beside_the_exception(fake, arm, caplog):
+    fake.failures = {"force_mode_stop": "a motion is running", "stop": "the arm still moves"}
+    with pytest.raises(KeyError), arm.modes.force_mode():
+        raise KeyError
+    assert "the end of force mode is not confirmed: stop: the arm still moves" in caplog.text
+
+
+@pytest.mark.parametrize("mode, end", [("force_mode", "force_mode_stop"), ("freedrive", "cancel freedrive")])
+def test_a_signal_ends_a_mode_of_a_program_that_uses_rclpy_itself(fake, mode, end):
+    code = f"""
+arm = Robot("{NAMESPACE}", timeout=20.0)
+try:
+    with arm.modes.{mode}():
+        print("running", flush=True)
+        rclpy.spin(node)
+except BaseException:  # KeyboardInterrupt, or an error of rclpy.spin()
+    print("end", flush=True)
+time.sleep(30.0)
+"""
+    with signaled_program(code) as program:
+        program.wait_for_output("end", 30.0)
+        assert end in fake.received, program.output()
+
+
+@pytest.mark.parametrize("start", [lambda arm: arm.modes.freedrive(), lambda arm: arm.start.freedrive()], ids=["mode", "goal"])
+def test_an_interruption_after_the_acceptance_cancels_the_goal(fake, arm, monkeypatch, start):
+    @contextlib.contextmanager
+    def interrupted_signals():
+        yield
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(goal, "own_signals", interrupted_signals)
+    with pytest.raises(KeyboardInterrupt), start(arm):
+        pytest.fail("the block was executed")
+    assert fake.received == ["freedrive", "cancel freedrive"]
+
+
+def test_an_interruption_at_the_end_of_a_block_cancels_the_goal(fake, arm, monkeypatch):
+    def cancel(self):
+        monkeypatch.undo()
+        raise KeyboardInterrupt  # before the request is sent
+
+    monkeypatch.setattr(goal.Goal, "cancel", cancel)
+    with pytest.raises(KeyboardInterrupt), arm.start.freedrive():
+        pass
+    assert fake.received == ["freedrive", "cancel freedrive"]

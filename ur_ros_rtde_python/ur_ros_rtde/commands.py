@@ -69,7 +69,12 @@ class Group:
             return goal
 
         def start(*values: Any, **given: Any) -> Goal:
-            return created(*values, **given).send()
+            goal = created(*values, **given)
+            try:
+                return goal.send()
+            except BaseException:  # Ctrl-C after it was accepted
+                goal.abandon()
+                raise
 
         def call(*values: Any, on_progress: Progress | None = None, result_timeout: float | None = None, **given: Any) -> Any:
             timeout = self._connection.result_timeout if result_timeout is None else result_timeout
@@ -81,6 +86,7 @@ class Group:
                 raise
 
         method: Any = start if self._starts else call
+        method.goal = created  # returns a goal that is not sent yet
         method.__name__ = method.__qualname__ = name.rpartition("/")[2]
         method.__doc__ = documentation(kind, plugin.description if plugin else "")
         method.__signature__ = _signature(action, self._starts)

@@ -49,6 +49,11 @@ class Goal:
     def is_finished(self) -> bool:
         return self._finished.done()
 
+    @property
+    def may_have_succeeded(self) -> bool:
+        """Whether the goal was accepted, and has succeeded or its result is not known."""
+        return self._handle is not None and (not self.is_finished or self._has_succeeded(self._finished.result()))
+
     def send(self) -> "Goal":
         """Sends the goal and returns when it is accepted. Raises Rejected or NoDriver."""
         with own_signals():
@@ -157,7 +162,11 @@ class Goal:
         if kind is not None:
             self.abandon()
         elif not self.is_finished:
-            self.cancel()
+            try:
+                self.cancel()
+            except BaseException:  # Ctrl-C, or a closed connection
+                self.abandon()
+                raise
         elif not self._cancel_requested:
             self._outcome()
 
@@ -196,10 +205,14 @@ class Goal:
 
     def _outcome(self) -> Any:
         response = self._finished.result()
-        succeeded = interface("action_msgs/msg/GoalStatus").STATUS_SUCCEEDED
-        if response.status != succeeded or not getattr(response.result, "success", True):
+        if not self._has_succeeded(response):
             raise CommandFailed(self.name, response.result)
         return response.result
+
+    @staticmethod
+    def _has_succeeded(response: Any) -> bool:
+        succeeded = interface("action_msgs/msg/GoalStatus").STATUS_SUCCEEDED
+        return response.status == succeeded and bool(getattr(response.result, "success", True))
 
     # In the executor's thread
 

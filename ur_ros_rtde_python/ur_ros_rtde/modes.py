@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from .commands import Commands, StartedCommands
+from .connection import Connection, ending
 from .errors import RobotError
 from .goal import Goal
 
@@ -15,34 +16,49 @@ class Modes:
     Any other command that lasts until it is canceled is a mode as well: `with arm.start.jog(...):`.
     """
 
-    def __init__(self, commands: Commands, start: StartedCommands):
-        self._commands, self._start = commands, start
-
-    def freedrive(self, *values: Any, **fields: Any) -> Goal:
-        """The arm can be moved by hand in selected axes. Ends with this program, even if it is killed."""
-        return self._start.freedrive(*values, **fields)
-
-    def teach_mode(self) -> Goal:
-        """The arm can be moved by hand in all axes. Ends with this program, even if it is killed."""
-        return self._start.teach_mode()
+    def __init__(self, connection: Connection, commands: Commands, start: StartedCommands):
+        self._connection, self._commands, self._start = connection, commands, start
 
     @contextlib.contextmanager
-    def force_mode(self, *values: Any, **fields: Any) -> Iterator[None]:
+    def freedrive(self, *values: Any, **fields: Any) -> Iterator[Goal]:
+        """The arm can be moved by hand in selected axes. Ends with this program, even if it is killed."""
+        command: Any = self._start.freedrive
+        with command.goal(*values, **fields) as goal:
+            yield goal.send()
+
+    @contextlib.contextmanager
+    def teach_mode(self) -> Iterator[Goal]:
+        """The arm can be moved by hand in all axes. Ends with this program, even if it is killed."""
+        command: Any = self._start.teach_mode
+        with command.goal() as goal:
+            yield goal.send()
+
+    @contextlib.contextmanager
+    def force_mode(self, *values: Any, result_timeout: float | None = None, **fields: Any) -> Iterator[None]:
         """Axes of the arm are compliant while other commands move it.
 
         Ends with this program, even if it is killed. The mode of `outlives_client=True` lasts until `stop()` or a failed motion.
         """
-        self._commands.force_mode_start(*values, **fields)
+        command: Any = self._start.force_mode_start
+        goal: Goal = command.goal(*values, **fields)
         try:
+            goal.send().result(self._connection.result_timeout if result_timeout is None else result_timeout)
             yield
+            self._end_force_mode()
         except BaseException:
-            with contextlib.suppress(RobotError):
-                self._end_force_mode()
+            goal.abandon()
+            if goal.may_have_succeeded:  # otherwise, a mode may be that of another client
+                with ending("force mode"):
+                    self._end_force_mode()
             raise
-        self._end_force_mode()
 
     def _end_force_mode(self) -> None:
-        try:
-            self._commands.force_mode_stop()
-        except RobotError:  # a motion is still running: stop() ends the motion and the mode
-            self._commands.stop()
+        """Ends force mode, over another connection if that of the Robot is closed."""
+        def end(connection: Connection) -> None:
+            commands = self._commands if connection is self._connection else Commands(connection, set())
+            try:
+                commands.force_mode_stop()
+            except RobotError:  # a motion is still running: stop() ends the motion and the mode
+                commands.stop()
+
+        self._connection.over_open_connection(end)

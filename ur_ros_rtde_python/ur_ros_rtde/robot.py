@@ -35,7 +35,7 @@ class Robot(Commands):
         self._connection, self._goals = connection, goals
         self.start = StartedCommands(connection, goals)
         self.state = State(connection)
-        self.modes = Modes(self, self.start)
+        self.modes = Modes(connection, self, self.start)
         self._signals = _EndBySignal()
         atexit.register(self.close)
 
