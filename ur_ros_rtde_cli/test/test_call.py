@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import pathlib
 import re
 import signal
 import subprocess
@@ -10,11 +11,12 @@ import time
 import pytest
 import yaml
 from programs import Process, find_program, start_node
-from rclpy.action import ActionServer
+from rclpy.action import ActionServer, CancelResponse
 from rclpy.task import Future
 from ros_client import Client
 from support import FEW_PLUGINS, HOME, TIMEOUT_FACTOR, wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, goal, output_on_terminal, slow_motion, ur, wait_until_moving
+from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT
 
 from ur_ros_rtde_msgs.action import ExecuteTrajectory, MoveJ
 
@@ -215,11 +217,15 @@ class UnresponsiveServer:
     def __init__(self):
         self.goals = []
         self._client = Client("unresponsive", name="unresponsive_server")
-        self._server = self._client.call_in_executor(lambda: ActionServer(self._client.node, MoveJ, "move_j", self._execute))
+        self._server = self._client.call_in_executor(lambda: ActionServer(
+            self._client.node, MoveJ, "move_j", self._execute, cancel_callback=self._accept_cancel))
 
     async def _execute(self, handle):
         self.goals.append(handle)
         await Future()
+
+    def _accept_cancel(self, _):
+        return CancelResponse.REJECT
 
     def call(self):
         """Returns a running `ur call` whose goal this server has."""
@@ -257,4 +263,38 @@ def test_a_second_signal_exits_without_the_result(unresponsive_server):
     time.sleep(1.1)  # an earlier signal counts as the first one
     process.signal(signal.SIGTERM)
     assert process.wait(10.0) == 128 + signal.SIGTERM, process.output()
-    assert time.monotonic() - begin < 8.0, "the program waited for its limit of 10 s"
+    assert time.monotonic() - begin < TIMEOUT_FACTOR * 8.0, "the program waited for the result"
+
+
+class BrakingServer(UnresponsiveServer):
+    """A move_j server whose canceled goals end with brake()."""
+
+    async def _execute(self, handle):
+        self.goals.append(handle)
+        self._standstill = Future()
+        await self._standstill
+        handle.canceled()
+        return MoveJ.Result(message="canceled at standstill")
+
+    def _accept_cancel(self, _):
+        return CancelResponse.ACCEPT
+
+    def brake(self, duration):
+        time.sleep(duration)
+        self._client.call_in_executor(lambda: self._standstill.set_result(True) or True)
+
+
+def test_a_canceled_goal_may_brake_for_longer_than_ten_seconds():
+    with contextlib.closing(BrakingServer()) as server:
+        process = server.call()
+        process.interrupt()
+        process.wait_for_output("canceling (SIGINT)")
+        server.brake(11.0)
+        assert process.wait(10.0) == 128 + signal.SIGINT, process.output()
+        assert "canceled at standstill" in process.output()
+
+
+def test_the_wait_for_a_canceled_goal_is_longer_than_the_driver_brakes():
+    source = pathlib.Path(__file__).resolve().parents[2] / "ur_ros_rtde" / "src" / "goals" / "command_goal.cpp"
+    braking = re.search(r"std::chrono::seconds braking_timeout\{(\d+)\};", source.read_text())
+    assert CANCEL_TIMEOUT >= int(braking[1]) + 5.0

@@ -1,10 +1,11 @@
-"""Whether the driver that has a goal is still there."""
+"""Whether the driver that has a goal is still there, and how long it may take to end it."""
 
 import time
 from typing import Any, FrozenSet, Optional
 
 STATUS_TOPIC = "/_action/status"  # behind the name of an action
 LOSS_TIME = 2.0  # s without the driver, after which it counts as gone
+CANCEL_TIMEOUT = 35.0  # s, for the result of a canceled goal, which may brake for 30 s within gentle limits of its own
 CHECK_PERIOD = 0.5  # s, at which a program that waits calls is_gone()
 LOOK_PERIOD = 0.5 * CHECK_PERIOD  # s, at least between two looks at the ROS graph
 

@@ -10,15 +10,13 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_msgs.msg import GoalRejected
 
 from . import actions, fields
-from .driver_watch import DriverWatch, loss
+from .driver_watch import CANCEL_TIMEOUT, DriverWatch, loss
 from .errors import CliError, OperationFailed
 from .feedback import write
 from .goal_output import JsonOutput, TextOutput
 from .interruptions import Interrupted
 from .namespaces import other_drivers
 from .session import GRAPH_POLL_PERIOD, Session
-
-CANCEL_TIMEOUT = 10.0  # s, to wait for the result of a canceled goal
 
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:

@@ -9,13 +9,11 @@ from collections.abc import Callable, Generator
 from types import TracebackType
 from typing import Any
 
-from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
+from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT, CHECK_PERIOD, DriverWatch, loss
 
 from .connection import Connection, load, own_signals
 from .conversions import interface
 from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout
-
-CANCEL_TIMEOUT = 35.0  # s, for the result of a canceled goal, which may brake within gentle limits of its own
 
 Progress = Callable[[Any], object]
 
