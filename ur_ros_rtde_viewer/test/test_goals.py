@@ -15,7 +15,7 @@ from ur_ros_rtde_cli import interruptions
 from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, LOSS_TIME, loss
 from ur_ros_rtde_viewer.control import goals as goals_module
 from ur_ros_rtde_viewer.control.control_node import ControlNode, create_steady_timer
-from ur_ros_rtde_viewer.control.goals import DISCOVERY_TIMEOUT, END_TIMEOUT, Goals, Phase, end_all
+from ur_ros_rtde_viewer.control.goals import CANCEL_TIMEOUT, DISCOVERY_TIMEOUT, Goals, Phase, end_all
 from ur_ros_rtde_viewer.control.stop import Stopper
 
 from ur_ros_rtde_msgs.action import MoveJ
@@ -137,7 +137,7 @@ def test_the_end_waits_for_all_goals_together_as_long_as_the_arm_may_brake(contr
     begin = clock[0]
     with caplog.at_level(logging.INFO):
         end_all(robots, lambda: False)
-    assert clock[0] - begin == pytest.approx(END_TIMEOUT) and END_TIMEOUT > BRAKING_TIMEOUT
+    assert clock[0] - begin == pytest.approx(CANCEL_TIMEOUT) and CANCEL_TIMEOUT > BRAKING_TIMEOUT
     assert "waiting up to 35 s for the end of /left/move_j and /right/move_j" in caplog.text
     assert "/left/move_j and /right/move_j may still be running" in caplog.text
 
@@ -161,7 +161,7 @@ def test_a_second_signal_ends_the_wait(control, monkeypatch):
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
         begin = time.monotonic()
         end_all([goals], lambda: interruption.is_pending)
-        assert 0.2 < time.monotonic() - begin < 0.5 * END_TIMEOUT and goal.phase == Phase.CANCELING
+        assert 0.2 < time.monotonic() - begin < 0.5 * CANCEL_TIMEOUT and goal.phase == Phase.CANCELING
     finally:
         interruption.restore_handlers()
 

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Held{"Dwell", {0.0, 2.0, 5.0, 7.0}, {0.0, 1.0, 1.0, 0.0}},
                                      Held{"DwellOnTheWay", {0.0, 1.0, 3.0, 4.0}, {0.0, 0.3, 0.3, 0.6}},
                                      Held{"Reversal", {0.0, 1.0, 2.0, 3.0}, {0.0, 0.5, -0.2, 0.1}},
-                                     Held{"Uneven", {0.0, 0.5, 3.5, 4.0}, {0.0, 0.3, 0.35, 0.7}}),
+                                     Held{"Uneven", {0.0, 0.7, 3.7, 4.4}, {0.0, 0.3, 0.35, 0.7}}),
                      testing::Bool()),
     [](const auto & given) {
       return std::string(std::get<0>(given.param).name) + (std::get<1>(given.param) ? "AtRest" : "");

@@ -11,7 +11,7 @@ from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ur_ros_rtde_cli import actions
-from ur_ros_rtde_cli.driver_watch import CHECK_PERIOD, DriverWatch, loss
+from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT, CHECK_PERIOD, DriverWatch, loss
 
 from ur_ros_rtde_msgs.msg import GoalRejected
 
@@ -20,7 +20,6 @@ from .control_node import ControlNode, create_steady_timer
 logger = logging.getLogger(__name__)
 
 DISCOVERY_TIMEOUT = 3.0  # s, for the server of an action
-END_TIMEOUT = 35.0  # s, for the results of all canceled goals, which may brake within gentle limits of their own
 END_CHECK_PERIOD = 0.1  # s
 REASON_TIMEOUT = 2.0  # s, for the reason of a rejection
 POLL_PERIOD = 0.02  # s, of the conditions above: changes of the ROS graph do not wake the executor
@@ -235,8 +234,8 @@ def end_all(robots: Iterable[Goals], is_interrupted: Callable[[], bool]) -> None
     `is_interrupted()`, which is called every END_CHECK_PERIOD."""
     waiting = [sent for goals in robots for sent in goals.cancel_all()]
     if waiting:
-        logger.info("waiting up to %g s for the end of %s; a second signal ends the viewer at once", END_TIMEOUT, _names(waiting))
-    deadline = time.monotonic() + END_TIMEOUT
+        logger.info("waiting up to %g s for the end of %s; a second signal ends the viewer at once", CANCEL_TIMEOUT, _names(waiting))
+    deadline = time.monotonic() + CANCEL_TIMEOUT
     while waiting and not is_interrupted() and (remaining := deadline - time.monotonic()) > 0.0:
         waiting[0].ended.wait(min(END_CHECK_PERIOD, remaining))
         waiting = [sent for sent in waiting if not sent.ended.is_set()]

@@ -28,7 +28,7 @@ const noteText = (input, now) => {
 };
 """
 
-# Sliders, lists and numbers are also edited by keys and pointers. Clicks that wait are dropped by STOP.
+# The palette of commands (Spotlight) has STOP. Sliders, lists and numbers are also edited by keys and pointers. Clicks that wait are dropped by STOP.
 CLICKS = f"""
 const waiting = new Set(), editors = '[class*=Slider], [aria-haspopup=listbox], [role=option], [class*=NumberInput]';
 let passing = null;
@@ -50,9 +50,10 @@ const pass = button => {{
     edited = performance.now();
   }}
 }};
+const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput], [class*=Spotlight]';
 window.addEventListener('click', event => {{
   const button = event.target.closest?.('button, input[type=checkbox]');
-  if (!button || button === passing || button.matches('{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput], [class*=Spotlight]')) return;
+  if (!button || button === passing || button.matches(atOnce)) return;
   if (performance.now() - edited >= PAUSE) return;
   event.stopImmediatePropagation();
   event.preventDefault();
