@@ -28,7 +28,8 @@ const noteText = (input, now) => {
 };
 """
 
-# The palette of commands (Spotlight) has STOP. Sliders, lists and numbers are also edited by keys and pointers. Clicks that wait are dropped by STOP.
+# The palette of commands (Spotlight) has STOP.
+# Sliders, lists and numbers are also edited by keys and pointers. Clicks that wait are dropped by STOP.
 CLICKS = f"""
 const waiting = new Set(), editors = '[class*=Slider], [aria-haspopup=listbox], [role=option], [class*=NumberInput]';
 let passing = null;
