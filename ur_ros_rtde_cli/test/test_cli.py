@@ -1,22 +1,27 @@
 """The program `ur` without its goals: state, plugins, recordings, help."""
 
 import csv
+import errno
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
 from types import SimpleNamespace
 
 import pytest
+from action_msgs.msg import GoalStatus
 from programs import Process, find_program
 from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from support import wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
-from ur_ros_rtde_cli import print_state, view
+from ur_ros_rtde_cli import print_state, record, view
 from ur_ros_rtde_cli.errors import CliError
+from ur_ros_rtde_cli.goal_output import JsonOutput
+from ur_ros_rtde_cli.interruptions import Interrupted
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS, main
 from ur_ros_rtde_cli.namespaces import other_drivers
 
@@ -189,6 +194,39 @@ def test_a_signal_during_the_request_leaves_no_recording_running(slow_recorder, 
     process.interrupt()
     assert process.wait(20.0) == code, process.output()
     assert requests == expected and ("another recording runs" in process.output()) == (not success)
+
+
+def test_a_recording_whose_message_cannot_be_written_ends(slow_recorder):
+    requests, _ = slow_recorder
+    with open("/dev/full", "w") as full:
+        command = [find_program("ur_ros_rtde_cli", "ur"), "record", "run.csv", "--namespace", "slow", "--time", "0.2"]
+        assert subprocess.run(command, stderr=full, stdout=subprocess.DEVNULL).returncode == 0
+    assert requests == ["start", "stop"]
+
+
+def test_a_signal_before_the_request_stops_the_recording():
+    def wait(condition, limit=None):
+        if not waits:
+            waits.append(limit)
+            raise Interrupted(signal.SIGINT)
+        return condition()
+
+    waits, sent, response = [], [], SimpleNamespace(success=True)
+    client = SimpleNamespace(service_is_ready=lambda: True, call_async=sent.append)
+    session = SimpleNamespace(node=SimpleNamespace(create_client=lambda *_: client), wait=wait, result=lambda *_: response)
+    assert record._stop(session, StopRecording) is response and len(sent) == 1 and waits
+
+
+def test_feedback_that_cannot_be_written_does_not_end_the_wait_for_the_result(monkeypatch):
+    def fail(_):
+        raise OSError(errno.ENOSPC, "no space left on device")
+
+    output = JsonOutput(quiet=False)
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", SimpleNamespace(write=fail))
+        output.feedback(SimpleNamespace(feedback=ActiveModes()))
+        with pytest.raises(OSError, match="no space"):
+            output.result(SimpleNamespace(status=GoalStatus.STATUS_SUCCEEDED, result=ActiveModes()))
 
 
 def test_starts_the_viewer(monkeypatch):

@@ -46,7 +46,8 @@ class JsonOutput:
 
     def feedback(self, message: Any) -> None:
         if not self._quiet:
-            with contextlib.suppress(BrokenPipeError):  # noticed by PendingInterruption, which cancels the goal
+            # PendingInterruption notices a closed output and cancels the goal. The result reports a full disk, with the arm at rest.
+            with contextlib.suppress(OSError):
                 self._write({"feedback": message.feedback})
 
     def clear(self) -> None:

@@ -5,10 +5,10 @@
 
 import argparse
 import pathlib
-import sys
 from typing import Any
 
 from .errors import OperationFailed
+from .feedback import write
 from .interruptions import Interrupted
 from .namespaces import other_drivers
 
@@ -41,6 +41,15 @@ def _response(session: Any, future: Any, name: str) -> Any:
     return response
 
 
+def _stop(session: Any, kind: Any) -> Any:
+    """Returns the response of stop_recording. The request is sent even after an interruption."""
+    try:
+        request = _send(session, kind, "stop_recording")
+    except Interrupted:
+        request = _send(session, kind, "stop_recording")
+    return _response(session, request, "stop_recording")
+
+
 def run(options: argparse.Namespace) -> int:
     from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # imported here because --help does not need ROS
 
@@ -50,10 +59,10 @@ def run(options: argparse.Namespace) -> int:
                         frequency=options.frequency)
         try:
             _response(created, started, "start_recording")
-            print("recording" + ("" if options.time is not None else ", press Ctrl-C to end"), file=sys.stderr)
+            write("recording" + ("" if options.time is not None else ", press Ctrl-C to end") + "\n")
             created.wait(lambda: None, options.time)
         except Interrupted:
             _response(created, started, "start_recording")  # only a recording that was started is stopped: it may be that of another user
-        stopped = _response(created, _send(created, StopRecording, "stop_recording"), "stop_recording")
+        stopped = _stop(created, StopRecording)
         print(f"{stopped.filename}: {stopped.rows} rows" + (f", {stopped.lost} lost" if stopped.lost else ""))
         return 0

@@ -1,11 +1,9 @@
 """Interruptions between the requests of a Robot, with a driver whose answers are delayed."""
 
 import contextlib
-import os
 import re
 import signal
 import sys
-import time
 
 import pytest
 from fake_driver import NAMESPACE, FakeDriver
@@ -77,6 +75,18 @@ except BaseException:  # KeyboardInterrupt, or an error of rclpy.spin()
         wait_for(lambda: "cancel move_j" in fake.received, 10.0, "the end of the goal")
 
 
+def test_a_goal_that_could_not_be_sent_is_no_missing_driver(fake, arm, monkeypatch):
+    def fail(self, function):
+        raise Timeout("the node could not send a request within 10 s")
+
+    arm._connection.action_client("move_j")
+    monkeypatch.setattr(Connection, "in_executor", fail)
+    monkeypatch.setattr(goal.Goal, "abandon", lambda self: None)
+    with pytest.raises(Timeout, match="could not send"):
+        arm.start.move_j(HOME)
+    arm._goals.clear()
+
+
 @pytest.mark.parametrize("wait", ["rclpy.spin(node)", "time.sleep(30.0)"], ids=["spin", "sleep"])
 def test_a_signal_ends_a_recording_of_a_program_that_uses_rclpy_itself(fake, wait):
     code = f"""
@@ -93,28 +103,23 @@ except BaseException:  # KeyboardInterrupt, or an error of rclpy.spin()
 
 
 def test_a_recording_that_is_not_stopped_is_reported_beside_the_exception(fake, arm, caplog):
-    fake.failures["stop_recording"] = "the disk is full"
+    fake.set(failures={"stop_recording": "the disk is full"})
     with pytest.raises(KeyError), arm.record("run.csv"):
         raise KeyError
     assert re.search("the end of the recording .*run.csv is not confirmed: the disk is full", caplog.text)
 
 
-def interrupt():
-    """As Ctrl-C, while the main thread waits for an answer of the driver."""
-    os.kill(os.getpid(), signal.SIGINT)
-
-
 @pytest.mark.parametrize("failures, expected", [({}, ["start_recording", "stop_recording"]),
                                                 ({"start_recording": "another recording runs"}, ["start_recording"])])
 def test_an_interrupted_start_leaves_no_recording_of_this_program_running(fake, arm, failures, expected):
-    fake.failures, fake.events["start_recording"] = failures, interrupt
+    fake.set(interrupt="start_recording", failures=failures)
     with pytest.raises(KeyboardInterrupt), arm.record("run.csv"):
         pytest.fail("the block was executed")
     assert fake.received == expected
 
 
 def test_a_recording_that_starts_late_is_stopped(fake):
-    fake.events["start_recording"] = lambda: time.sleep(1.0)
+    fake.set(delay="start_recording")
     with Robot(NAMESPACE, timeout=0.9) as robot, pytest.raises(NoDriver, match="did not respond"), robot.record("run.csv"):
         pytest.fail("the block was executed")
     assert fake.received == ["start_recording", "stop_recording"]
@@ -134,33 +139,34 @@ def test_a_recording_whose_end_is_interrupted_is_stopped(fake, arm, monkeypatch)
     assert interrupted and fake.received == ["start_recording", "stop_recording"]
 
 
-@pytest.mark.parametrize("event, timeout, error", [(interrupt, None, KeyboardInterrupt), (lambda: time.sleep(1.0), 0.5, Timeout)])
+@pytest.mark.parametrize("event, timeout, error", [("interrupt", None, KeyboardInterrupt), ("delay", 0.5, Timeout)])
 def test_an_interrupted_start_of_force_mode_ends_it(fake, arm, event, timeout, error):
-    fake.events["force_mode_start"] = event
+    fake.set(**{event: "force_mode_start"})
     with pytest.raises(error), arm.modes.force_mode(result_timeout=timeout):
         pytest.fail("the block was executed")
-    assert fake.received[0] == "force_mode_start" and fake.received[-1] == "force_mode_stop"
+    received = fake.received
+    assert received[0] == "force_mode_start" and received[-1] == "force_mode_stop"
 
 
 def test_a_start_of_force_mode_that_fails_leaves_the_mode_of_another_client_on(fake, arm):
-    fake.failures["force_mode_start"] = "the robot is in a protective stop"
+    fake.set(failures={"force_mode_start": "the robot is in a protective stop"})
     with pytest.raises(CommandFailed, match="protective stop"), arm.modes.force_mode():
         pytest.fail("the block was executed")
-    fake.rejected.append("force_mode_start")
+    fake.set(reject="force_mode_start")
     with pytest.raises(Rejected), arm.modes.force_mode():
         pytest.fail("the block was executed")
     assert fake.received == ["force_mode_start"]
 
 
 def test_force_mode_whose_end_is_interrupted_is_ended(fake, arm):
-    fake.events["force_mode_stop"] = interrupt
+    fake.set(interrupt="force_mode_stop")
     with pytest.raises(KeyboardInterrupt), arm.modes.force_mode():
         pass
     assert [name for name in fake.received if "cancel" not in name] == ["force_mode_start", "force_mode_stop", "force_mode_stop"]
 
 
 def test_force_mode_that_is_not_ended_is_reported_beside_the_exception(fake, arm, caplog):
-    fake.failures = {"force_mode_stop": "a motion is running", "stop": "the arm still moves"}
+    fake.set(failures={"force_mode_stop": "a motion is running", "stop": "the arm still moves"})
     with pytest.raises(KeyError), arm.modes.force_mode():
         raise KeyError
     assert "the end of force mode is not confirmed: stop: the arm still moves" in caplog.text
@@ -205,3 +211,15 @@ def test_an_interruption_at_the_end_of_a_block_cancels_the_goal(fake, arm, monke
     with pytest.raises(KeyboardInterrupt), arm.start.freedrive():
         pass
     assert fake.received == ["freedrive", "cancel freedrive"]
+
+
+def test_an_interruption_while_a_robot_is_closed_removes_its_node(fake, monkeypatch):
+    def abandon(self):
+        raise KeyboardInterrupt
+
+    robot = Robot(NAMESPACE, timeout=TIMEOUT_FACTOR * 20.0)
+    robot.start.freedrive()
+    monkeypatch.setattr(goal.Goal, "abandon", abandon)
+    with pytest.raises(KeyboardInterrupt):
+        robot.close()
+    assert not robot._connection.is_open

@@ -52,13 +52,15 @@ class Robot(Commands):
         atexit.unregister(self.close)
         try:
             with own_signals():
-                running = list(self._goals)
-                for goal in running:
-                    with contextlib.suppress(RobotError):
-                        goal.request_cancel()
-                for goal in running:
-                    goal.abandon()
-                self._connection.close()
+                try:
+                    running = list(self._goals)
+                    for goal in running:
+                        with contextlib.suppress(RobotError):
+                            goal.request_cancel()
+                    for goal in running:
+                        goal.abandon()
+                finally:  # also after Ctrl-C: a driver without its client stops the arm
+                    self._connection.close()
         finally:
             self._signals.restore()
 
