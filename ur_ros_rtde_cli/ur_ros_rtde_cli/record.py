@@ -8,7 +8,6 @@ import pathlib
 from typing import Any
 
 from .errors import OperationFailed
-from .feedback import write
 from .interruptions import Interrupted
 from .namespaces import other_drivers
 
@@ -51,7 +50,9 @@ def _stop(session: Any, kind: Any) -> Any:
 
 
 def run(options: argparse.Namespace) -> int:
-    from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # imported here because --help does not need ROS
+    from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # imported here, as below, because --help does not need ROS
+
+    from .feedback import write
 
     from .session import session
     with session(options.namespace) as created:
