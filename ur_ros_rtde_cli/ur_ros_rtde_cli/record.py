@@ -53,7 +53,6 @@ def run(options: argparse.Namespace) -> int:
     from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # imported here, as below, because --help does not need ROS
 
     from .feedback import write
-
     from .session import session
     with session(options.namespace) as created:
         started = _send(created, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
