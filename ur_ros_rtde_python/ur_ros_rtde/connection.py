@@ -107,10 +107,11 @@ class Connection:
         self._thread.start()
 
     def _spin(self) -> None:
-        from rclpy.executors import ExternalShutdownException
-
-        with contextlib.suppress(ExternalShutdownException):
+        try:
             self._executor.spin()
+        except Exception:  # of rclpy, if ROS was shut down in this program: check_open() reports that
+            if self._context.ok():
+                raise
 
     def close(self) -> None:
         self._was_closed = True
