@@ -120,8 +120,11 @@ def test_an_interrupted_start_leaves_no_recording_of_this_program_running(fake, 
 
 def test_a_recording_that_starts_late_is_stopped(fake):
     fake.set(delay="start_recording")
-    with Robot(NAMESPACE, timeout=0.9) as robot, pytest.raises(NoDriver, match="did not respond"), robot.record("run.csv"):
-        pytest.fail("the block was executed")
+    with Robot(NAMESPACE, timeout=TIMEOUT_FACTOR * 20.0) as robot:
+        wait_for(lambda: robot._connection.served().get("move_j"), 20.0, "the driver")
+        robot._connection.timeout = 0.9
+        with pytest.raises(NoDriver, match="did not respond"), robot.record("run.csv"):
+            pytest.fail("the block was executed")
     assert fake.received == ["start_recording", "stop_recording"]
 
 

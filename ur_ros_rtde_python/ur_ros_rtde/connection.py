@@ -122,7 +122,7 @@ class Connection:
 
     @property
     def is_open(self) -> bool:
-        return bool(self._context.ok()) and self._thread.is_alive()
+        return not self._was_closed and bool(self._context.ok()) and self._thread.is_alive()
 
     def check_open(self) -> None:
         """Raises RobotError with the cause if the connection is closed."""

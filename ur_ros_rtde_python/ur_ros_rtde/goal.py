@@ -49,8 +49,10 @@ class Goal:
 
     @property
     def may_have_succeeded(self) -> bool:
-        """Whether the goal was accepted, and has succeeded or its result is not known."""
-        return self._handle is not None and (not self.is_finished or self._has_succeeded(self._finished.result()))
+        """Whether the goal was sent, and has succeeded or its answer or result is not known."""
+        if not self.is_finished:
+            return self._queued
+        return self._handle is not None and self._has_succeeded(self._finished.result())
 
     def send(self) -> "Goal":
         """Sends the goal and returns when it is accepted. Raises Rejected or NoDriver."""
@@ -162,6 +164,8 @@ class Goal:
         elif not self.is_finished:
             try:
                 self.cancel()
+            except Timeout:
+                raise
             except BaseException:  # Ctrl-C, or a closed connection
                 self.abandon()
                 raise

@@ -7,7 +7,7 @@ from typing import Any
 from .commands import Commands, StartedCommands
 from .connection import Connection, ending
 from .errors import RobotError
-from .goal import Goal
+from .goal import Goal, Progress
 
 
 class Modes:
@@ -34,7 +34,8 @@ class Modes:
             yield goal.send()
 
     @contextlib.contextmanager
-    def force_mode(self, *values: Any, result_timeout: float | None = None, **fields: Any) -> Iterator[None]:
+    def force_mode(self, *values: Any, on_progress: Progress | None = None, result_timeout: float | None = None,
+                   **fields: Any) -> Iterator[None]:
         """Axes of the arm are compliant while other commands move it.
 
         Ends with this program, even if it is killed. The mode of `outlives_client=True` lasts until `stop()` or a failed motion.
@@ -42,14 +43,19 @@ class Modes:
         command: Any = self._start.force_mode_start
         goal: Goal = command.goal(*values, **fields)
         try:
-            goal.send().result(self._connection.result_timeout if result_timeout is None else result_timeout)
+            goal.send().result(self._connection.result_timeout if result_timeout is None else result_timeout, on_progress)
             yield
-            self._end_force_mode()
         except BaseException:
             goal.abandon()
             if goal.may_have_succeeded:  # otherwise, a mode may be that of another client
                 with ending("force mode"):
                     self._end_force_mode()
+            raise
+        try:
+            self._end_force_mode()
+        except (KeyboardInterrupt, SystemExit):
+            with ending("force mode"):
+                self._end_force_mode()
             raise
 
     def _end_force_mode(self) -> None:

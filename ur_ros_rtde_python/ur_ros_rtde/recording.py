@@ -85,14 +85,17 @@ class Recording:
             done = Answer()
             return connection.call("ur_ros_rtde_msgs/srv/StopRecording", "stop_recording", done)
 
-        try:
+        def stop() -> None:
             response = self._connection.over_open_connection(request)
+            self.rows, self.lost = response.rows, response.lost
+
+        try:
+            stop()
         except (KeyboardInterrupt, SystemExit):
             if done.cancel():  # the request was not sent
                 with self._ending():
-                    self._connection.over_open_connection(request)
+                    stop()
             raise
-        self.rows, self.lost = response.rows, response.lost
 
     def read(self) -> Any:
         """Returns the recording as structured numpy array. The file must be on this host."""
