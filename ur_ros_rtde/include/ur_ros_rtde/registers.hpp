@@ -16,7 +16,7 @@ class Registers {
   /// Input registers 19 to 22.
   void set_int(int index, std::int32_t value);
   void set_double(int index, double value);
-  /// Output registers 12 to 19 (double: without 18) of the newest sample.
+  /// Output registers 12 to 19 (double: 13 to 19 without 18) of the newest sample.
   std::int32_t get_int(int index) const;
   double get_double(int index) const;
 
