@@ -132,7 +132,7 @@ class _Scope:
         return self._item(begin, self._position)
 
     def _items(self) -> Iterator[_Item]:
-        """Yields all, whatever their access. The comment after an item is added to it later."""
+        """Yields the public ones and comments of several. The comment after an item is added to it later."""
         while True:
             blanks = re.compile(r"\s*").match(self._text, self._position)
             assert blanks is not None
@@ -204,7 +204,7 @@ def _members(body: str, access: str) -> List[Declaration]:
             group, title = item.title, "" if item.title == FOR_PLUGINS else item.title
         found = _declaration(item) if group != FOR_DRIVER else None
         if found is not None:
-            found.title, title = title, ""  # also if the first of the group is not shown
+            found.title, title = title, ""  # even if the first of the group is not shown
             declarations.append(found)
     return declarations
 

@@ -1,4 +1,4 @@
-"""The pages of the reference about the API of plugins: what its headers declare, in the order of GROUPS."""
+"""The pages of the reference about the API of plugins: what its headers declare, in the order of PAGES."""
 
 import pathlib
 import re

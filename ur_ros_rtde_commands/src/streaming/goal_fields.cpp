@@ -126,6 +126,7 @@ Expected<trajectory::TimedWaypoints> timed_waypoints(const trajectory_msgs::msg:
   if (waypoints.positions.empty()) {
     return failure(ErrorCode::invalid_goal, "points[0].positions has 0 values, it must have 6");
   }
+  trajectory::drop_close_waypoints(waypoints);
   return waypoints;
 }
 

@@ -59,8 +59,8 @@ inline trajectory::Joints to_joints(const std::vector<double> & values)
 /// Empty `names` mean the order of UR.
 Expected<std::array<std::size_t, 6>> joint_order(const std::vector<std::string> & names);
 
-/// Converts the points of a trajectory to the joint order of UR. Fails if the trajectory is incomplete. Does
-/// not check limits.
+/// Converts the points of a trajectory to the joint order of UR, without those that are too close to another
+/// one (trajectory::drop_close_waypoints). Fails if the trajectory is incomplete. Does not check limits.
 Expected<trajectory::TimedWaypoints> timed_waypoints(const trajectory_msgs::msg::JointTrajectory & message);
 
 }  // namespace ur_ros_rtde

@@ -33,7 +33,6 @@ void check_timed_trajectory(Check & check, const trajectory_msgs::msg::JointTraj
   if (!check.ok()) {
     return;
   }
-  trajectory::drop_close_waypoints(*waypoints);
   const trajectory::Joints first = to_joints(waypoints->positions.front());
   const bool starts_at_first = waypoints->times.front() == 0.0;
   trajectory::prepend_start(*waypoints, first);
@@ -51,7 +50,6 @@ Expected<trajectory::Trajectory> plan_timed_trajectory(const trajectory_msgs::ms
   if (!waypoints) {
     return tl::unexpected(waypoints.error());
   }
-  trajectory::drop_close_waypoints(*waypoints);
   trajectory::prepend_start(*waypoints, start);
   return trajectory::plan_timed(*waypoints, limits);
 }

@@ -73,6 +73,15 @@ def test_accepts_joints_in_any_order(robot):
     assert last.joint_names == names and last.actual.positions == pytest.approx([target[i] for i in order], abs=0.1)
 
 
+def test_a_last_step_of_microseconds_is_accepted(robot, simulator):
+    """MoveIt samples every 0.1 s and appends the end."""
+    start, target = simulator.state()["target"]["position"], home_plus(0.2)
+    begin, end = point(0.0, start, [0.0] * 6), point(1.50005, target, [0.0] * 6)
+    status, result = send(robot, begin, point(1.5, target, [0.0] * 6), end).wait_for_result(20.0)
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.error_string
+    assert simulator.state()["actual"]["position"][0] == pytest.approx(target[0], abs=0.002)
+
+
 def test_a_trajectory_of_another_arm_is_rejected(robot):
     goal = send(robot, point(1.5, home_plus(0.1), [0.0] * 6), names=["left_" + joint for joint in JOINTS])
     assert not goal.accepted
