@@ -32,6 +32,7 @@ class Event:
     has_result: bool = True
     slows_time: bool = False  # the speed scaling falls: an arm that accelerates still does so at first
     is_silent: bool = False  # is noticed after the silence_limit
+    stops_robot: bool = False  # the safety system does: no program runs until the operator acts
     ends_waiting: bool = True  # also ends a goal that waits for the arm
     in_local_control: bool = True  # possible there
 
@@ -168,9 +169,9 @@ EVENTS = (
     Event("dashboard stop", _dashboard_stop, 5.0, in_local_control=False),
     Event("preempted", _preempt, 40.0, BEGIN_LIMIT, asks="goal", keeps_program=True, profile="preempt", ends_waiting=False,
           in_local_control=False),
-    Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock),
-    Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard),
-    Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop),
+    Event("protective stop", _control("protective_stop", reason="test"), 5.0, BEGIN_LIMIT, recover=_unlock, stops_robot=True),
+    Event("safeguard stop", _control("safeguard"), 5.0, BEGIN_LIMIT, recover=_close_safeguard, stops_robot=True),
+    Event("emergency stop", _control("emergency_stop"), 4.0, BEGIN_LIMIT, recover=_release_emergency_stop, stops_robot=True),
     Event("program stopped", _press(_stop_button), 5.0, BEGIN_LIMIT),
     Event("program paused", _press(_pause_button), 5.0, BEGIN_LIMIT, recover=_press_play, slows_time=True),
     Event("program replaced", _play_another_program, 3.0, BEGIN_LIMIT, in_local_control=False),

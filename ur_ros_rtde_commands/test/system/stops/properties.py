@@ -1,7 +1,8 @@
 """What has to hold in each case.
 
 Always: the arm comes to rest, within the time of the deceleration after the limit of the event, or after the end of a hold; it does
-not move again; the goal has one result, within 1 s of the standstill; the lease is free, and the next goal works.
+not move again; the goal has one result, within 1 s of the standstill (4 s if the robot has stopped before it began a script); the lease is
+free, and the next goal works.
 
 Without a hold and a goal that waits: the deceleration begins within the limit of the event, and is the one that was asked for. These two
 limits are excused if the host did not let the programs run for as long as they are exceeded; excuses are counted and reported. A stream of
@@ -22,6 +23,7 @@ RESULT_LIMIT = 1.0 * TIMEOUT_FACTOR  # s of the host, after the standstill
 HELD_REST_LIMIT = 1.2  # s of the robot, after the end of a hold: the driver may have lost the connection, or the watchdog has to act
 LOCAL_LIMIT = 4.0  # s, more in local control, where the driver tries to stop the program before it uses the watchdog
 LOCAL_RESULT_LIMIT = 5.5  # s, more in local control: a script's result waits for the control program, which cannot be started there
+SCRIPT_BEGIN_LIMIT = 3.0  # s, more for a script that has been sent: it may begin until then, even if the robot has stopped
 MODE_REST_LIMIT = 0.8  # s, more for what the driver does not decelerate along a path: the end of a mode, a braking arm
 TOLERANCE = 0.12  # of a deceleration
 LONG_STALL = 0.01  # s
@@ -90,9 +92,14 @@ class Checks:
         begin = max(self._lane.when, trace.published[min(stopping.rest, trace.length() - 1)], self.hold["end"] if self.hold else 0)
         self._report.result = round(1e-9 * (self.result_at - begin), 4)
         limit = RESULT_LIMIT + self._time_to_notice() + (LOCAL_RESULT_LIMIT if self._case.local else 0.0)
+        limit += SCRIPT_BEGIN_LIMIT * TIMEOUT_FACTOR if self._may_not_have_begun(stopping) else 0.0
         if self._report.result > limit:
             self._limit_exceeded(f"the result comes {self._report.result:.3f} s after the standstill", self._report.result - limit,
                                  self._stall_until_rest)
+
+    def _may_not_have_begun(self, stopping: motion.Stopping) -> bool:
+        """A script that was sent just before the robot stopped."""
+        return self._case.kind.runs_script and self._case.event.stops_robot and not self._case.waits_for_motion and stopping.first is None
 
     def _time_to_notice(self) -> float:
         """s, in which the event may not have been noticed, of an arm that is at rest before."""
