@@ -8,6 +8,7 @@
 #include <ur_ros_rtde/check_result.hpp>
 #include <ur_ros_rtde/command.hpp>
 #include <ur_ros_rtde/mode.hpp>
+#include <ur_ros_rtde_msgs/action/move_l.hpp>
 #include <ur_ros_rtde_robot/state/conversions.hpp>
 #include <ur_ros_rtde_tutorials/action/insert_peg.hpp>
 #include <utility>
@@ -23,10 +24,12 @@ using ur_ros_rtde::Sample;
 using ur_ros_rtde::StopReason;
 using ur_ros_rtde::Vector3;
 using ur_ros_rtde::Vector6;
+using ur_ros_rtde_msgs::action::MoveL;
 using std::chrono_literals::operator""ms;
 
 namespace {
 constexpr double acceleration = 0.5;   // m/s^2
+constexpr double clearance = 0.02;     // m, above a hole whose frame is known
 constexpr double found_depth = 0.001;  // m, below the surface: the peg is in the hole
 constexpr double spare_time = 2.0;     // s, in addition to distance / speed
 
@@ -82,6 +85,11 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
 
   Outcome run(const Goal & goal, Run & run) override
   {
+    if (!goal.hole.empty()) {
+      if (Outcome above = run.call<MoveL>("move_l", above_hole(goal)); !above) {
+        return above;
+      }
+    }
     run.control()->zeroFtSensor();
     if (auto stop_reason = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
       return *stop_reason;
@@ -103,6 +111,17 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
     options.limits = {goal.speed, goal.speed, goal.speed, 0.5, 0.5, 0.5};
     ur_ros_rtde::start_force_mode(run, options).keep_on();  // `pressing` ends it
     return insert(goal, run, surface);
+  }
+
+  /// The tool's Z axis points into the hole.
+  static MoveL::Goal above_hole(const Goal & goal)
+  {
+    MoveL::Goal above;
+    above.frame_id = goal.hole;
+    above.pose.position.z = clearance;
+    above.pose.orientation.x = 1.0;
+    above.pose.orientation.w = 0.0;
+    return above;
   }
 
   /// Moves the TCP with a velocity (m/s) in the frame that it had at `start`, until the next call.

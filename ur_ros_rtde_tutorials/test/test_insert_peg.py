@@ -4,7 +4,10 @@ import math
 
 import pytest
 from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
+from ros_client import TRANSIENT_LOCAL
 from support import wait_for
+from tf2_msgs.msg import TFMessage
 from ur_ros_rtde_tutorials.action import InsertPeg
 
 from ur_ros_rtde_msgs.msg import ErrorCode
@@ -46,6 +49,30 @@ def test_the_peg_is_inserted_into_a_hole_beside_it(robot, simulator):
     assert result.offset == pytest.approx(math.dist(start[:2], end[:2]), abs=0.002)
     assert max(feedback.depth for feedback in goal.feedback) > 0.005
     assert ends_at_rest_without_force_mode(simulator)
+
+
+def test_the_peg_is_moved_to_a_hole_that_tf_has(robot, simulator):
+    place_plate(simulator, 0.06)
+    x, y, z = position(simulator)
+    hole = TransformStamped(child_frame_id="hole")
+    hole.header.frame_id = "base"
+    hole.transform.translation = Vector3(x=x + 0.06, y=y, z=z - SURFACE)
+    hole.transform.rotation = Quaternion(z=math.sqrt(0.5), w=math.sqrt(0.5))  # as the tool
+    publisher = robot.node.create_publisher(TFMessage, "/tf_static", TRANSIENT_LOCAL)
+    publisher.publish(TFMessage(transforms=[hole]))
+    insert(robot, hole="hole", radius=0.002, depth=0.012).succeeded(60.0)
+    end = position(simulator)
+    assert end[2] == pytest.approx(z - SURFACE - 0.012, abs=0.004)
+    assert abs(end[0] - x - 0.06) < HALF_WIDTH + 0.001 and abs(end[1] - y) < HALF_WIDTH + 0.001
+    robot.node.destroy_publisher(publisher)
+
+
+def test_without_its_hole_the_peg_is_not_moved(robot, simulator):
+    start = position(simulator)
+    result = insert(robot, hole="hloe").result(60.0)
+    assert result.error_code == ErrorCode.INVALID_GOAL
+    assert 'move_l: frame_id: TF has no frame "hloe"' in result.message, result.message
+    assert position(simulator) == pytest.approx(start, abs=0.001)
 
 
 def test_fails_with_not_reached_without_a_hole(robot, simulator):

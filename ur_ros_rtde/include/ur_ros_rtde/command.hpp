@@ -9,6 +9,7 @@
 #include "ur_ros_rtde/command_traits.hpp"
 #include "ur_ros_rtde/detail/called_command.hpp"
 #include "ur_ros_rtde/detail/command_goal.hpp"
+#include "ur_ros_rtde/detail/goal_in_base.hpp"
 #include "ur_ros_rtde/detail/goal_server.hpp"
 #include "ur_ros_rtde/detail/guarded.hpp"
 #include "ur_ros_rtde/plugin.hpp"
@@ -38,7 +39,9 @@ namespace ur_ros_rtde {
 /// started is stopped by decelerating, and the goal gets its only result. When a goal has to end earlier, the
 /// arm is stopped without waiting for run(). The result of `A` begins with `bool success, uint16 error_code,
 /// string message`. The fields `ArmState final_state` of the result and `MotionFeedback motion` of the
-/// feedback are filled in if `A` has them.
+/// feedback are filled in if `A` has them. If the goal of `A` has a field `string frame_id`, its poses are
+/// given in that frame of TF (empty: `base`), and check() and run() get them in `base`: the fields `pose`,
+/// `via` and `poses`, and those of its `waypoints`.
 template <typename A>
 class Command : public CommandPlugin {
  public:
@@ -91,13 +94,18 @@ class Command<A>::GoalOfCommand final : public CommandGoal {
   using Message = typename A::Goal;
 
   GoalOfCommand(Command & command, const rcl_cxx::GoalUUID & id, const Message & message)
-      : CommandGoal(command.description_, id), command_(command), message_(message)
+      : CommandGoal(command.description_, id), command_(command), message_(message), goal_(message)
   {
   }
 
  private:
-  void check_fields(Check & check) const override { command_.check(message_, check); }
-  StopOptions stop_options() const override { return command_.stop_options(message_); }
+  bool has_frame(const std::string & base) const override { return goal_.has_frame(base); }
+  Status resolve(Frames & frames, const std::stop_token & stop) override
+  {
+    return goal_.resolve(frames, stop);
+  }
+  void check_fields(Check & check) const override { command_.check(*goal_, check); }
+  StopOptions stop_options() const override { return command_.stop_options(*goal_); }
   std::optional<bool> outlives_client() const override
   {
     if constexpr (requires { message_.outlives_client; }) {
@@ -108,7 +116,7 @@ class Command<A>::GoalOfCommand final : public CommandGoal {
   Outcome run_command(const RunContext & context) override
   {
     run_.emplace(context);
-    return run_->with_warnings(command_.run(message_, *run_));
+    return run_->with_warnings(command_.run(*goal_, *run_));
   }
   void send_result(const Outcome & outcome, bool abandoned) override
   {
@@ -123,6 +131,7 @@ class Command<A>::GoalOfCommand final : public CommandGoal {
 
   Command & command_;
   const Message & message_;
+  GoalInBase<Message> goal_;
   std::optional<Run> run_;
 };
 
@@ -156,11 +165,17 @@ void Command<A>::stop_server()
 template <typename A>
 CalledCommand Command<A>::called(const Goal & goal, Result & result)
 {
-  return {*description_, [this, &goal](Check & check) { this->check(goal, check); },
-          [this, &goal] { return stop_options(goal); },
-          [this, &goal, &result](const RunContext & context) {
+  const auto in_base = std::make_shared<GoalInBase<Goal>>(goal);
+  return {*description_,
+          [this, in_base](const std::stop_token & stop) {
+            Frames & frames = description_->host.frames();
+            return in_base->has_frame(frames.base()) ? in_base->resolve(frames, stop) : Status();
+          },
+          [this, in_base](Check & check) { this->check(**in_base, check); },
+          [this, in_base] { return stop_options(**in_base); },
+          [this, in_base, &result](const RunContext & context) {
             Run run(context);
-            const Outcome outcome = run.with_warnings(this->run(goal, run));
+            const Outcome outcome = run.with_warnings(this->run(**in_base, run));
             result = std::move(run.result());
             fill_result(outcome, result);
             return outcome;

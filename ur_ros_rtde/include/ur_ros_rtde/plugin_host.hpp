@@ -16,6 +16,7 @@
 
 #include "ur_ros_rtde/detail/goals.hpp"
 #include "ur_ros_rtde/detail/startup_requests.hpp"
+#include "ur_ros_rtde/frames.hpp"
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 #include "ur_ros_rtde_trajectory/arm_limits.hpp"
 #include "ur_ros_rtde_trajectory/error.hpp"
@@ -75,7 +76,10 @@ class CommandHost : public PluginHost {
   // For the driver
 
   CommandHost(rcl_cxx::Node & node, Robot & robot, const Options & options)
-      : PluginHost(node, options.servers_on_demand), robot_(robot), options_(options)
+      : PluginHost(node, options.servers_on_demand),
+        robot_(robot),
+        options_(options),
+        frames_(node, options.tf_prefix + "base")
   {
   }
 
@@ -84,6 +88,8 @@ class CommandHost : public PluginHost {
   Robot & robot() { return robot_; }
   /// Its `tf_prefix` is that of the names of joints and frames.
   const Options & options() const { return options_; }
+  /// Where the frames of TF are.
+  Frames & frames() { return frames_; }
   /// The limits of the robot's model; see Robot::limits().
   ArmLimits limits() const;
   /// Robot::begin_stop(), after which no goal moves the arm that was received before.
@@ -125,6 +131,7 @@ class CommandHost : public PluginHost {
  private:
   Robot & robot_;
   Options options_;
+  Frames frames_;
   std::atomic<std::uint32_t> stops_ = 0;
   StartupRequests startup_requests_;
   std::atomic<std::uint32_t> mode_switches_ = 0;

@@ -65,6 +65,9 @@ class Run {
   /// of the TCP. If the TCP offset has no rotation, which is common, that is the orientation of the flange,
   /// and [2] is the force along the flange's Z axis.
   Vector6 flange_force() const;
+  /// The pose of a frame of TF in `base` now: position (m) and rotation vector (rad). See Frames::pose();
+  /// also fails for a topic of teleoperation.
+  Expected<Vector6> frame(const std::string & frame_id) const;
   /// What else is known of the robot: its model and limits, the cycle time, the version.
   const Robot & robot() const { return context_.robot; }
 

@@ -100,6 +100,9 @@ Outcome Run::execute(const CalledCommand & called)
   const Activities active_before = robot().activities() & outlasting_modes;
   std::optional<StopOptionsOfCall> stop_options;
   const Outcome outcome = guarded(*context_.stop_request, [&]() -> Outcome {
+    if (Status resolved = called.resolve_frame(context_.stop_request->token()); !resolved) {
+      return resolved;
+    }
     Check check(&context_.robot, [&] { return may_execute(called); });
     called.check(check);
     if (Status possible = all_succeed(check, context_.robot); !possible) {

@@ -134,6 +134,26 @@ Status CommandGoal::check(std::vector<GoalQuery> & queries)
 {
   stops_before_ = command_->host.stops();
   received_ = robot().generation();
+  Frames & frames = command_->host.frames();
+  if (!has_frame(frames.base())) {
+    return check_in_base(queries);
+  }
+  queries.push_back([this, &frames]() -> Status {
+    if (Status resolved = resolve(frames, stop_request().token()); !resolved) {
+      return resolved;
+    }
+    std::vector<GoalQuery> next;
+    Status status = check_in_base(next);
+    for (auto query = next.begin(); status && query != next.end(); ++query) {
+      status = (*query)();
+    }
+    return status;
+  });
+  return {};
+}
+
+Status CommandGoal::check_in_base(std::vector<GoalQuery> & queries)
+{
   Check result(&robot(), [this] { return prepare(); });
   check_fields(result);
   result.ready();

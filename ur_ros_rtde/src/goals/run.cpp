@@ -87,6 +87,13 @@ Vector6 Run::flange_force() const
   return tcp_frame_force(state());
 }
 
+Expected<Vector6> Run::frame(const std::string & frame_id) const
+{
+  return context_.command != nullptr
+             ? context_.command->host.frames().pose(frame_id, context_.stop_request->token())
+             : failure(ErrorCode::not_supported, "a topic of teleoperation has no frames of TF");
+}
+
 std::optional<StopReason> Run::stop_reason() const
 {
   if (auto why = context_.stop_request->reason()) {

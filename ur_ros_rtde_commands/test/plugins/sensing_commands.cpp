@@ -65,6 +65,24 @@ class FailsToSetTheTool : public Command<SendScript> {
   }
 };
 
+/// The result has the pose of the frame that `script` names.
+class TellsFrame : public Command<SendScript> {
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
+
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    const auto pose = run.frame(goal.script);
+    if (!pose) {
+      return pose.error();
+    }
+    for (const double value : *pose) {
+      run.result().output.push_back(fmt::format("{}", value));
+    }
+    return Outcome::success();
+  }
+};
+
+UR_ROS_RTDE_EXPORT(TellsFrame, "tells_frame")
 UR_ROS_RTDE_EXPORT(WaitsForOutput, "waits_for_output")
 UR_ROS_RTDE_EXPORT(UsesAnotherTool, "uses_another_tool")
 UR_ROS_RTDE_EXPORT(FailsToSetTheTool, "fails_to_set_the_tool")

@@ -1,4 +1,4 @@
-"""What Run offers to plugins besides motions: RTDE outputs, settings that are put back. The commands are those of test/plugins."""
+"""What Run offers to plugins besides motions: RTDE outputs, frames of TF, settings that are put back. The commands are those of test/plugins."""
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -18,8 +18,8 @@ def driver(simulator, tmp_path_factory):
     """A driver with the commands of test/plugins."""
     environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
     assert environment, "the test commands have not been built"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,waits_for_output,uses_another_tool,"
-                        "fails_to_set_the_tool]", env=environment)
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,tells_frame,waits_for_output,"
+                        "uses_another_tool,fails_to_set_the_tool]", env=environment)
     yield driver
     driver.stop()
     print(driver.output())
@@ -44,6 +44,13 @@ def test_an_output_that_no_sample_contains_can_be_waited_for(robot, simulator):
 def test_an_output_that_cannot_be_read_is_named(robot, name, code, text):
     result = robot.send(SendScript, "waits_for_output", script=name, timeout=5.0).result()
     assert result.error_code == code and text in result.message, result.message
+
+
+def test_the_pose_of_a_frame_of_tf_is_told(robot, simulator):
+    told = robot.send(SendScript, "tells_frame", script="tool0_controller", timeout=5.0).succeeded().output
+    assert [float(value) for value in told[:3]] == pytest.approx(simulator.state()["actual_tcp_pose"][:3], abs=0.002)
+    result = robot.send(SendScript, "tells_frame", script="nowhere", timeout=5.0).result()
+    assert result.error_code == ErrorCode.INVALID_GOAL and 'TF has no frame "nowhere"' in result.message, result.message
 
 
 def receiving_connections(simulator):

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 
 #include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/detail/command_goal.hpp"
@@ -12,6 +13,7 @@ namespace ur_ros_rtde {
 /// Run::call().
 struct CalledCommand {
   const CommandDescription & description;
+  std::function<Status(const std::stop_token &)> resolve_frame;
   std::function<void(Check &)> check;
   std::function<StopOptions()> stop_options;
   std::function<Outcome(const RunContext &)> run;

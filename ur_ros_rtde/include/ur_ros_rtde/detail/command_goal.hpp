@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ class CommandGoal : public Goal {
   std::optional<Status> stopped() const final;
 
  protected:
+  /// Its poses have to be transformed by resolve() before they are checked.
+  virtual bool has_frame(const std::string & base) const = 0;
+  virtual Status resolve(Frames & frames, const std::stop_token & stop) = 0;
   virtual void check_fields(Check & check) const = 0;
   virtual StopOptions stop_options() const = 0;
   /// The field of the goal; empty if there is none: what its modes end with is not changed.
@@ -62,6 +66,8 @@ class CommandGoal : public Goal {
   Outcome execute() final;
   void on_stop(const Error & why) final;
 
+  /// Once the poses are in `base`.
+  Status check_in_base(std::vector<GoalQuery> & queries);
   Claim claim();
   bool preempts() const;
   Status prepare();
