@@ -90,7 +90,7 @@ class InsertPeg : public ur_ros_rtde::Command<action::InsertPeg> {
         return above;
       }
     }
-    run.control()->zeroFtSensor();
+    ur_ros_rtde::check_result(run.control()->zeroFtSensor(), "zero the force/torque sensor");
     if (auto stop_reason = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
       return *stop_reason;
     }

@@ -21,6 +21,7 @@ using ur_ros_rtde::Sample;
 using ur_ros_rtde::StopOptions;
 using ur_ros_rtde::Supervision;
 using ur_ros_rtde::Vector3;
+using ur_ros_rtde::WhileReasonPersists;
 using ur_ros_rtde_msgs::action::MoveLRelative;
 using ur_ros_rtde_msgs::action::MoveUntilForce;
 using std::chrono_literals::operator""s;
@@ -117,7 +118,7 @@ class VacuumPick : public ur_ros_rtde::Command<action::VacuumPick> {
       }
       return Error{ErrorCode::not_reached, "the part was lost: the vacuum switch is off"};
     };
-    supervision_.emplace(*host_, StopOptions{}, lost);
+    supervision_.emplace(*host_, StopOptions{}, WhileReasonPersists::allow, lost);
   }
 
   unsigned output_ = 0;

@@ -104,6 +104,8 @@ class Check {
   bool ok() const { return !error_; }
   /// The first failure.
   const std::optional<Error> & error() const { return error_; }
+  /// The first failure, also of the queries, which are called here: waits for the robot.
+  Status ask(Robot & robot);
   /// The queries in the order of their calls.
   std::vector<RobotQuery> take_queries() { return std::move(queries_); }
 

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "ur_ros_rtde/check.hpp"
 #include "ur_ros_rtde/run.hpp"
 
 namespace ur_ros_rtde {
 
-/// Force mode, freedrive or teach mode, on as long as this object exists. The driver ends it together with
-/// the goal, after its motion, if the goal has to end before, or if a motion in this mode has not been ended
-/// (speedStop(), stopL()) when the object is destroyed.
+/// Force mode, freedrive or teach mode, on as long as this object exists. Its destructor stops a motion that
+/// goes on, then ends the mode. If the goal has to end before, the driver does both.
 ///
 ///     const Mode pressing = start_force_mode(run, options);
 ///     if (Outcome found = search(run); !found) {
@@ -57,10 +57,13 @@ struct ForceModeOptions {
   double gain_scaling = 0.5;  ///< 0 to 2
 };
 
+/// Checks what the control program does not, with the names of the fields of the action ForceMode.
+Check & check_force_mode(Check & check, const ForceModeOptions & options);
+
 /// Makes axes compliant. Motions of the same goal follow their path in the other axes. To change
 /// the options, call it again, and keep_on() of what it returns: the first object ends the mode. These
-/// functions throw RobotError: busy if another mode excludes this one, rejected_by_robot if the control
-/// program did not switch it on.
+/// functions throw RobotError: busy if another mode excludes this one, invalid_goal for options that are not
+/// valid, rejected_by_robot if the control program did not switch it on.
 Mode start_force_mode(Run & run, const ForceModeOptions & options);
 /// Lets the arm be moved by hand along `free_axes` (x, y, z, rx, ry, rz) of `feature`, a UR pose in the base
 /// frame (m, rad).

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <rcl_cxx/node.hpp>
 #include <rcl_cxx/server_goal_handle.hpp>
 #include <string>
@@ -122,6 +123,10 @@ class CommandHost : public PluginHost {
   void forget_owner_of_ended_modes();
   /// The client of this goal has disappeared.
   void end_modes_of(const rcl_cxx::GoalUUID & goal);
+  /// Why no goal may move the arm; empty: this supervision has no reason.
+  void set_hindrance(const void * supervision, const std::optional<Error> & why);
+  /// Fails with the first of these reasons.
+  Status may_move() const;
   /// The commands that Run::call() finds, by name.
   void add_command(const std::string & name, CommandPlugin & command);
   void remove_command(const std::string & name);
@@ -137,6 +142,8 @@ class CommandHost : public PluginHost {
   std::atomic<std::uint32_t> mode_switches_ = 0;
   std::mutex mode_owner_mutex_;
   std::shared_ptr<rcl_cxx::ServerGoalHandle> mode_owner_;
+  mutable std::mutex hindrances_mutex_;
+  std::map<const void *, Error> hindrances_;  ///< by supervision
   mutable std::mutex commands_mutex_;
   std::map<std::string, CommandPlugin *> commands_;
 };

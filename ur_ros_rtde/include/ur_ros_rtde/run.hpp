@@ -92,8 +92,9 @@ class Run {
   /// Repeats a check of the goal where the motion begins: a goal that was preempted, or force mode, has moved
   /// the arm since it was accepted.
   [[nodiscard]] Outcome check_again(const std::function<void(Check &)> & check);
-  /// Waits until the asynchronous motion that the last call through control() has started has ended and the
-  /// arm is at rest. Fails if the control program did not start it, or after `timeout`.
+  /// Waits until the last asynchronous motion that was started through control() has ended and the arm is at
+  /// rest. Other calls may have followed it: queries, a mode. Fails if the control program did not start it,
+  /// or after `timeout`.
   [[nodiscard]] Outcome until_motion_ends(std::chrono::nanoseconds timeout = std::chrono::minutes(10));
   /// The same with progress, for a known target: fails (not_reached) if the motion ended elsewhere, and
   /// (timeout) if the arm does not come closer to it for 10 min, without the time in which the speed
@@ -196,6 +197,12 @@ class Run {
   {
     return std::exchange(control_timeout_, timeout);
   }
+  /// The last call through control() that has sent a move; if there is none, the beginning of this goal.
+  struct Motion {
+    MotionMark mark;
+    std::chrono::steady_clock::time_point begin;
+  };
+  const Motion & motion() const { return robot().has_sent_move(call_.mark) ? call_ : motion_; }
   struct Target;
   Outcome until_reached(const Target & target, double tolerance);
   Outcome until_at(const Target & target, double tolerance);
@@ -215,8 +222,8 @@ class Run {
   std::string warnings_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point next_feedback_ = begin_;
-  std::chrono::steady_clock::time_point last_call_ = begin_;
-  MotionMark mark_;
+  Motion call_;    ///< the last one through control()
+  Motion motion_;  ///< before that call; see motion()
   std::chrono::milliseconds control_timeout_{0};
 };
 

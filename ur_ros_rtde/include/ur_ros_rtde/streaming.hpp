@@ -94,7 +94,8 @@ class TargetPeriod {
 ///     }
 ///     return run.stop_motion(options.stop_options());
 ///
-/// However the goal ends, the arm decelerates. After a delay of the host, the motion goes on from the last
+/// However the goal or the stream ends, the arm decelerates: the destructor stops it with
+/// StreamOptions::deceleration. After a delay of the host, the motion goes on from the last
 /// command: slower, never faster.
 class TargetStream {
  public:
@@ -102,6 +103,7 @@ class TargetStream {
   TargetStream(Run & run, std::unique_ptr<TargetFollower> follower, const StreamOptions & options);
   /// The same with a follower that outlives this object.
   TargetStream(Run & run, TargetFollower & follower, const StreamOptions & options);
+  /// A failure to stop the arm is a warning of the goal.
   ~TargetStream();
   TargetStream(const TargetStream &) = delete;
   TargetStream & operator=(const TargetStream &) = delete;

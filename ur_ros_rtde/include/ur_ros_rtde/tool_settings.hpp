@@ -26,9 +26,8 @@ std::vector<double> to_ur_center_of_gravity(const Vector3 & center_of_gravity);
 /// above.
 [[nodiscard]] Outcome set_tcp(Run & run, const std::vector<double> & offset);
 
-/// A setting that lasts as long as this object exists. Its destructor waits until the arm is at rest and puts
-/// the setting before back, also after a cancel or if the new one was not confirmed; a failure is a warning
-/// of the goal.
+/// A setting that lasts as long as this object exists. Its destructor stops the arm and puts the setting
+/// before back, also after a cancel or if the new one was not confirmed; a failure is a warning of the goal.
 ///
 ///     const TemporarySetting payload = temporary_payload(run, 2.0, {0.0, 0.0, 0.05});
 class [[nodiscard]] TemporarySetting {

@@ -17,20 +17,6 @@ bool covers(Resource own, Resource other)
   return !moves_arm(other) || own == other || (own == Resource::motion && other == Resource::mode);
 }
 
-/// For the check of a called command, which stops at the first failure.
-Status all_succeed(Check & check, Robot & robot)
-{
-  if (!check.ready().ok()) {
-    return tl::unexpected(*check.error());
-  }
-  for (const RobotQuery & query : check.take_queries()) {
-    if (Status answer = query(robot); !answer) {
-      return answer;
-    }
-  }
-  return {};
-}
-
 /// If the goal has to end during a call, the arm is stopped as the called command asks.
 class StopOptionsOfCall {
  public:
@@ -105,7 +91,7 @@ Outcome Run::execute(const CalledCommand & called)
     }
     Check check(&context_.robot, [&] { return may_execute(called); });
     called.check(check);
-    if (Status possible = all_succeed(check, context_.robot); !possible) {
+    if (Status possible = check.ready().ask(context_.robot); !possible) {
       return possible;
     }
     if (wanted.needs_motion()) {

@@ -273,6 +273,17 @@ Check & Check::query(RobotQuery query)
   return *this;
 }
 
+Status Check::ask(Robot & robot)
+{
+  Status result = ok() ? Status() : tl::unexpected(*error_);
+  for (const RobotQuery & query : take_queries()) {
+    if (result) {
+      result = query(robot);
+    }
+  }
+  return result;
+}
+
 std::optional<Sample> Check::newest()
 {
   if (!ready().ok() || robot_ == nullptr) {

@@ -100,6 +100,9 @@ Status CommandGoal::prepare()
       return available;
     }
   }
+  if (Status free = is_not_hindered(); !free) {
+    return free;
+  }
   const Claim wanted = claim();
   if (wanted.resource == Resource::none || preempts()) {
     return robot().may_use(wanted);
@@ -115,8 +118,34 @@ Status CommandGoal::prepare()
   if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
     return not_overtaken;
   }
+  if (Status alone = is_alone(); !alone) {
+    return alone;
+  }
   lease_ = std::move(*lease);
   return {};
+}
+
+Status CommandGoal::is_not_hindered() const
+{
+  return command_->may_move_arm() ? command_->host.may_move() : Status();
+}
+
+Status CommandGoal::is_alone() const
+{
+  return *command_->running == 0
+             ? Status()
+             : failure(
+                   ErrorCode::busy,
+                   fmt::format("an earlier goal of {} has been abandoned, and its command has not returned: "
+                               "try again when it has, or restart the driver",
+                               action()));
+}
+
+Outcome CommandGoal::run_counted()
+{
+  ++*command_->running;
+  const std::shared_ptr<void> end(nullptr, [this](void *) { --*command_->running; });
+  return run_command(make_context());
 }
 
 Status CommandGoal::is_not_overtaken() const
@@ -126,6 +155,9 @@ Status CommandGoal::is_not_overtaken() const
   }
   if (command_->host.stops() != stops_before_) {
     return tl::unexpected(stopped_by_the_driver());
+  }
+  if (Status free = is_not_hindered(); !free) {
+    return free;
   }
   return robot().is_continued(received_);
 }
@@ -286,6 +318,9 @@ Status CommandGoal::acquire()
   if (!lease && !preempts_all) {
     return tl::unexpected(lease.error());
   }
+  if (Status alone = preempts_all ? Status() : is_alone(); !alone) {
+    return alone;
+  }
   if (lease) {
     hold(std::move(*lease));
   }
@@ -320,7 +355,7 @@ Outcome CommandGoal::execute()
           begin_stop();  // after the first one
         }
       }
-      return run_command(make_context());
+      return run_counted();
     }
     if (auto why = stop_request().reason()) {
       return *std::move(why);
@@ -342,7 +377,7 @@ Outcome CommandGoal::execute()
     if (command_->traits.preempts_all) {
       command_->host.wait_for_startup_requests();
     }
-    return run_command(make_context());
+    return run_counted();
   });
   return leave_modes(settle(explain(std::move(outcome), begin)));
 }

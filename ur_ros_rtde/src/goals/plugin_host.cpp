@@ -126,6 +126,22 @@ void CommandHost::end_modes_of(const rcl_cxx::GoalUUID & goal)
   RCL_CXX_WARN(node().get_logger(), "the arm is stopped: {}", why.message);
 }
 
+void CommandHost::set_hindrance(const void * supervision, const std::optional<Error> & why)
+{
+  const std::lock_guard lock(hindrances_mutex_);
+  if (why) {
+    hindrances_[supervision] = *why;
+  } else {
+    hindrances_.erase(supervision);
+  }
+}
+
+Status CommandHost::may_move() const
+{
+  const std::lock_guard lock(hindrances_mutex_);
+  return hindrances_.empty() ? Status() : tl::unexpected(hindrances_.begin()->second);
+}
+
 void CommandHost::add_command(const std::string & name, CommandPlugin & command)
 {
   const std::lock_guard lock(commands_mutex_);

@@ -35,19 +35,22 @@ ur_ros_rtde_msgs::msg::ArmState to_arm_state(const std::optional<Sample> & sampl
   return state;
 }
 
-Run::Run(RunContext context) : context_(std::move(context)), mark_(context_.robot.mark_motion()) {}
+Run::Run(RunContext context)
+    : context_(std::move(context)), call_{context_.robot.mark_motion(), begin_}, motion_(call_)
+{
+}
 
 Outcome Run::check_again(const std::function<void(Check &)> & check)
 {
   Check again(&context_.robot);
   check(again);
-  return again.ok() ? Outcome::success() : *again.error();
+  return again.ask(context_.robot);
 }
 
 Locked<ur_rtde::RTDEControlInterface> Run::control()
 {
-  mark_ = robot().mark_motion();
-  last_call_ = Clock::now();
+  motion_ = motion();
+  call_ = {robot().mark_motion(), Clock::now()};
   const auto control =
       context_.lease != nullptr ? context_.robot.control(*context_.lease) : control_for_queries();
   return control_timeout_.count() > 0 ? control.before_others(control_timeout_) : control;
@@ -111,6 +114,9 @@ Outcome Run::stop_motion(StopOptions options)
 {
   if (context_.lease == nullptr) {
     return Outcome::failure(ErrorCode::exception, "a command without Resource::motion has nothing to stop");
+  }
+  if (context_.command != nullptr && context_.command->traits.resource == Resource::mode) {
+    return Outcome::success();  // what moves belongs to another goal
   }
   options.keep = robot().activities() & outlasting_modes;
   return stop_except_kept(options);

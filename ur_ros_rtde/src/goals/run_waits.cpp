@@ -201,7 +201,7 @@ std::optional<StopReason> Run::next(Sample & sample)
 
 std::optional<StopReason> Run::until_standstill(std::chrono::nanoseconds timeout)
 {
-  auto why = until([this] { return robot().motion_progress(mark_).at_rest; }, timeout);
+  auto why = until([this] { return robot().motion_progress(motion().mark).at_rest; }, timeout);
   if (why && why->code == ErrorCode::timeout) {
     why->message = "the arm did not come to a standstill: " + why->message;
   }
@@ -216,9 +216,10 @@ bool Run::is_compliant() const
 
 bool Run::motion_ended() const
 {
-  const MotionProgress motion = robot().motion_progress(mark_);
-  return motion.finished() || (motion.ended() && is_compliant()) ||
-         (!motion.started && Clock::now() - last_call_ > motion_start_timeout);
+  const Motion & last = motion();
+  const MotionProgress progress = robot().motion_progress(last.mark);
+  return progress.finished() || (progress.ended() && is_compliant()) ||
+         (!progress.started && Clock::now() - last.begin > motion_start_timeout);
 }
 
 Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)
@@ -229,7 +230,7 @@ Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)
     }
     return *why;
   }
-  if (!robot().motion_progress(mark_).started) {
+  if (!robot().motion_progress(motion().mark).started) {
     return Outcome::failure(ErrorCode::rejected_by_robot,
                             "the control program did not start the motion: see the log on the teach pendant");
   }
@@ -287,7 +288,7 @@ Outcome Run::until_at(const Target & target, double tolerance)
   const auto update = [&] {
     const double left = target.distance(state());
     progress(std::max(progress(), std::clamp(1.0 - left / initial, 0.0, 1.0)));
-    const bool at_rest = robot().motion_progress(mark_).at_rest;
+    const bool at_rest = robot().motion_progress(motion().mark).at_rest;
     approach.update(left, (!at_rest && !is_compliant()) || is_paused(state()));
     reached = at_rest && left <= tolerance;
     return reached || approach.idle() > settling_timeout || (is_compliant() && left <= tolerance);

@@ -33,9 +33,16 @@ Sample with_payload(const Sample & sample)
   return sample;
 }
 
-/// Waits for the end of a motion or of a stop: the load of a moving arm is not changed.
-void require_standstill(const Robot & robot)
+/// The load of a moving arm is not changed: stops what the goal has started, or waits for the stop that has
+/// taken the arm out of its hands.
+void require_standstill(Run & run)
 {
+  const Robot & robot = run.robot();
+  if (!run.stop_reason() && robot.is_moving()) {
+    if (const Outcome stopped = run.stop_motion(); !stopped) {
+      throw RobotError(stopped.error());
+    }
+  }
   constexpr std::chrono::seconds limit{5};
   constexpr std::chrono::milliseconds timeout{100};
   const auto deadline = std::chrono::steady_clock::now() + limit;
@@ -44,6 +51,9 @@ void require_standstill(const Robot & robot)
   }
   if (robot.is_moving()) {
     throw RobotError({ErrorCode::busy, "the arm moves: set it again when it is at rest"});
+  }
+  if (robot.activities().contains(Activity::force_mode)) {
+    throw RobotError({ErrorCode::busy, "force mode is on: end it, then set it again"});
   }
 }
 
@@ -76,6 +86,10 @@ std::vector<double> to_ur_center_of_gravity(const Vector3 & center_of_gravity)
 Outcome set_tcp(Run & run, const std::vector<double> & offset)
 {
   constexpr double tolerance = 1e-5;  // m, rad
+  if (offset.size() != 6) {
+    throw RobotError(
+        {ErrorCode::invalid_goal, fmt::format("a TCP has 6 values (m, rad), not {}", offset.size())});
+  }
   check_result(run.control()->setTcp(offset), "set the TCP");
   return run.expect([&] { return pose_difference(run.control()->getTCPOffset(), offset) < tolerance; },
                     setting_timeout, "the robot still reports another TCP");
@@ -98,7 +112,7 @@ TemporarySetting::~TemporarySetting()
     return;
   }
   try {
-    require_standstill(run_.robot());
+    require_standstill(run_);
     check_result(put_back_(*run_.control_for_queries().hold()), "accept it");
   } catch (const std::exception & error) {
     run_.warn(fmt::format("{} was not put back: {}", name_, error.what()));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "ur_ros_rtde/streaming.hpp"
@@ -53,6 +54,15 @@ TargetStream::TargetStream(Run & run, TargetFollower & follower, const StreamOpt
 TargetStream::~TargetStream()
 {
   run_.exchange_control_timeout(control_timeout_);
+  try {
+    if (const auto stopped =
+            run_.stop_reason() ? Outcome::success() : run_.stop_motion(options_.stop_options());
+        !stopped) {
+      run_.warn(stopped.message());
+    }
+  } catch (const std::exception & error) {
+    run_.warn(error.what());
+  }
 }
 
 std::optional<StopReason> TargetStream::wait()

@@ -232,6 +232,9 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
     if (host_.stops() != first.session.stops) {
       return stopped_by_the_driver();  // after the session had begun
     }
+    if (const Status free = host_.may_move(); !free) {
+      return free;
+    }
     std::shared_ptr<StopRequest> stop_request;
     {
       const std::lock_guard lock(mutex_);

@@ -157,6 +157,8 @@ class Robot {
 
   /// The motion state before a command, for motion_progress().
   MotionMark mark_motion() const;
+  /// A move has been sent since the mark. Other commands, and queries, do not count.
+  bool has_sent_move(const MotionMark & since) const;
   /// Progress of the motion since `mark`. Commands without an asynchronous operation (speed_l, servo_j) only
   /// change at_rest.
   MotionProgress motion_progress(const MotionMark & mark) const;

@@ -61,6 +61,12 @@ Activities StartedActivities::now() const
   return fence_ ? result | Activity::script : result;
 }
 
+std::uint32_t StartedActivities::moves() const
+{
+  const auto control = interfaces_.control_interface();
+  return control ? control->getSentMoves() : 0;
+}
+
 Activities StartedActivities::calls() const
 {
   const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -23,6 +24,8 @@ struct CommandDescription {
   std::string action;  ///< resolved name: "/left/move_l"
   CommandTraits traits;
   bool is_extension = false;
+  /// Number of goals whose command is being executed, also of those that were abandoned.
+  std::shared_ptr<std::atomic<int>> running = std::make_shared<std::atomic<int>>(0);
 
   /// Its goals are served like stops.
   bool is_stop() const { return traits.preempts_all || traits.stops_arm; }
@@ -32,6 +35,11 @@ struct CommandDescription {
   bool needs_motion() const
   {
     return moves_arm(traits.resource) && !traits.allowed_in_any_state && !traits.preempts_all;
+  }
+  /// A goal may move the arm, or let it be moved: not one that only ends a mode.
+  bool may_move_arm() const
+  {
+    return needs_motion() && (traits.resource != Resource::mode || traits.leaves_mode_active);
   }
   bool stops_when_client_lost() const { return host.options().stop_when_client_lost && !is_stop(); }
 };
@@ -75,6 +83,11 @@ class CommandGoal : public Goal {
   /// Since the goal was received, nothing has happened that it must not survive: a stop, or an end of the
   /// program that is not a consequence of its preemption.
   Status is_not_overtaken() const;
+  /// No supervision has a reason against a goal that moves the arm.
+  Status is_not_hindered() const;
+  /// For a goal that holds its resource: no abandoned goal of this command is still being executed.
+  Status is_alone() const;
+  Outcome run_counted();
   Status acquire();
   void hold(Lease lease);
   RunContext make_context();

@@ -15,6 +15,7 @@ namespace ur_ros_rtde {
 struct MotionMark {
   AsyncStatus async;
   std::uint32_t program = 0;  ///< number of robot programs that have ended
+  std::uint32_t moves = 0;    ///< number of moves that have been sent to this program
 };
 
 /// What has happened to a motion since a MotionMark.
