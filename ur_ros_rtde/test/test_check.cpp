@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ur_ros_rtde/check.hpp"
+#include "ur_ros_rtde/mode.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -106,6 +107,31 @@ TEST(CheckTest, AcceptsOneLineOfText)
   EXPECT_FALSE(Check().line("text", "power off\nshutdown", 100).ok());
   EXPECT_FALSE(Check().line("text", std::string("a\0b", 3), 100).ok());
   EXPECT_FALSE(Check().line("text", "too long", 7).ok());
+}
+
+TEST(CheckForceModeTest, NamesWhatTheControlProgramWouldNotCheck)
+{
+  const auto problem = [](const ForceModeOptions & options) {
+    Check check;
+    return message(check_force_mode(check, options));
+  };
+  const ForceModeOptions valid{.compliant = {false, false, true, false, false, false},
+                               .wrench = {0.0, 0.0, -10.0, 0.0, 0.0, 0.0}};
+  EXPECT_EQ(problem(valid), "");
+  ForceModeOptions options = valid;
+  options.task_frame = {0.0, 0.0, 0.1};
+  EXPECT_EQ(problem(options), "task_frame must have 6 finite values: position (m) and rotation vector (rad)");
+  options = valid;
+  options.compliant = {};
+  EXPECT_EQ(problem(options), "compliant is false for all axes: at least one axis has to be true");
+  options = valid;
+  options.wrench[2] = 600.0;
+  EXPECT_NE(problem(options).find("wrench.force"), std::string::npos);
+  options.wrench[2] = nan;
+  EXPECT_NE(problem(options).find("wrench.force"), std::string::npos);
+  options = valid;
+  options.limits[0] = 0.0;
+  EXPECT_NE(problem(options).find("limits[0]"), std::string::npos);
 }
 
 TEST(ToUrTest, ConvertsAQuaternionToARotationVector)

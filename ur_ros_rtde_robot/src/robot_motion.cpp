@@ -164,12 +164,12 @@ Status Robot::motion_possible() const
 MotionMark Robot::mark_motion() const
 {
   const auto view = impl_->tracker.view();
-  return {view.async, view.program, impl_->activities.moves()};
+  return {view.async, view.program, impl_->activities.sent_moves()};
 }
 
 bool Robot::has_sent_move(const MotionMark & since) const
 {
-  return impl_->activities.moves() != since.moves;
+  return impl_->activities.sent_moves() != since.moves;
 }
 
 MotionProgress Robot::motion_progress(const MotionMark & mark) const

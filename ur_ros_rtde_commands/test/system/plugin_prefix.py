@@ -14,8 +14,9 @@ _CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_sp
             "turns_as_mode": "TurnsAsMode", "turns_as_output": "TurnsAsOutput", "turns_and_hangs": "TurnsAndHangs",
             "starts_speed_l": "StartsSpeedL", "starts_force_mode": "StartsForceMode", "fails": "Fails",
             "slow_to_check": "SlowToCheck", "very_slow_to_check": "VerySlowToCheck", "blocks_callbacks": "BlocksCallbacks",
-            "tells_frame": "TellsFrame", "waits_for_output": "WaitsForOutput", "uses_another_tool": "UsesAnotherTool",
-            "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs",
+            "asks_during_a_motion": "AsksDuringAMotion", "checks_again": "ChecksAgain", "ends_its_scope": "EndsItsScope",
+            "watches_a_door": "WatchesADoor", "tells_frame": "TellsFrame", "waits_for_output": "WaitsForOutput",
+            "uses_another_tool": "UsesAnotherTool", "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs",
             "dashboard/slow_to_check": "DashboardSlowToCheck"}
 
 

@@ -1,4 +1,4 @@
-"""What Run offers to plugins besides motions: RTDE outputs, frames of TF, settings that are put back. The commands are those of test/plugins."""
+"""What Run offers to plugins besides motions: RTDE outputs, frames of TF, settings that are put back. The commands are in test/plugins."""
 
 import pytest
 from action_msgs.msg import GoalStatus

@@ -61,7 +61,7 @@ Activities StartedActivities::now() const
   return fence_ ? result | Activity::script : result;
 }
 
-std::uint32_t StartedActivities::moves() const
+std::uint32_t StartedActivities::sent_moves() const
 {
   const auto control = interfaces_.control_interface();
   return control ? control->getSentMoves() : 0;

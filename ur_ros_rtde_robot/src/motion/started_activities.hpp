@@ -28,7 +28,7 @@ class StartedActivities {
 
   Activities now() const;
   /// Number of moves that have been sent over the present connection, also of those that have ended.
-  std::uint32_t moves() const;
+  std::uint32_t sent_moves() const;
 
   /// A call of the holder of `permit`, which may start something, until the end of the returned object. To be
   /// used before the permit is checked: a stop that revokes it afterwards finds the call.
