@@ -13,6 +13,7 @@ BROWSER = True
 MEASURES_TIME = True
 REJECTIONS = 10  # messages of a held button
 STREAM_TIMEOUT = 1.0  # s; allows for the slow rendering of a browser without a GPU
+SPEED, SLOW = "Speed [m/s]", "0.01"  # while a busy browser answers after seconds, the arm must not come to its limits
 PAUSE_OF_THE_BROWSER = "end => { for (end += performance.now(); performance.now() < end;); }"
 
 
@@ -111,7 +112,7 @@ def test_a_finger_that_moves_on_a_button_does_not_scroll_the_page(tab, name):
 def test_jog_stops_when_the_tab_is_closed(browser, viewer, robot, simulator):
     second = Tab(browser, viewer[-1].url)
     second.open("Jog")
-    second.field("Speed [m/s]").fill("0.01")  # a busy browser closes a tab after seconds: the arm must not come to its limits
+    second.field(SPEED).fill(SLOW)
     with second.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move")
         second.close()
@@ -127,6 +128,7 @@ def test_two_tabs_have_forms_of_their_own_and_only_one_jogs(browser, tab, viewer
         assert second.field("speed [rad/s]").input_value() == "0.5"
         tab.open("Jog")
         second.open("Jog")
+        tab.field(SPEED).fill(SLOW)
         with tab.held("Z +"):
             until(lambda: is_moving(simulator), "the arm to move")
             with second.held("Z −"):

@@ -123,8 +123,10 @@ def start_slow_robot(addresses, processes):
 
 @pytest.fixture
 def robot(simulator, driver, client):
-    """A client of a driver that is ready, with the arm at home and no obstacles."""
+    """A client of a driver that is ready, with the arm at home and no obstacles. A protective stop of the test before is unlocked."""
     assert driver.running(), driver.output()
+    if simulator.state()["safety_mode"] == "PROTECTIVE_STOP":
+        wait_for(simulator.unlock_protective_stop, 15.0, "the protective stop to be unlocked")
     simulator.control("clear_surfaces")
     simulator.control("clear_boxes")
     simulator.control("clear_pushes")
