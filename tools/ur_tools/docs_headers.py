@@ -214,7 +214,7 @@ def _scopes(text: str) -> Iterator[str]:
     outside, position = "", 0
     while begin := re.compile(r"^namespace ([\w:]*)\s*\{", re.M).search(text, position):
         end = _end_of_braces(text, begin.end() - 1)
-        if begin[1].startswith("ur_ros_rtde"):
+        if begin[1].startswith(("ur_ros_rtde", "rcl_cxx")):
             yield from _scopes(text[begin.end():end - 1])
         outside, position = outside + text[position:begin.start()], text.index("\n", end)
     yield outside + text[position:]

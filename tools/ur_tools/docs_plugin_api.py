@@ -19,10 +19,16 @@ PAGES: Sequence[Tuple[str, str, Dict[str, Sequence[str]]]] = (
         "Motions and modes": ("ur_ros_rtde/mode", "ur_ros_rtde/streaming", "ur_ros_rtde/target_messages", "ur_ros_rtde/tcp_target",
                               "ur_ros_rtde/tool_settings"),
         "Inputs, outputs and supervision": ("ur_ros_rtde/outputs", "ur_ros_rtde/digital_output", "ur_ros_rtde/supervision"),
+        "Frames of TF": ("ur_ros_rtde/frames",),
         "Extensions of the control program": ("ur_ros_rtde/extension", "ur_ros_rtde_robot/script/script_extension",
                                               "ur_ros_rtde/registers"),
         "Dashboard commands": ("ur_ros_rtde/dashboard_command", "ur_ros_rtde/dashboard_run"),
         "Plugins and their server": ("ur_ros_rtde/plugin", "ur_ros_rtde/plugin_host"),
+    }),
+    ("plugin_api_ros", "Plugin API: ROS interfaces", {
+        "Nodes": ("rcl_cxx/node", "rcl_cxx/callback_group", "rcl_cxx/logging"),
+        "Parameters": ("rcl_cxx/parameter",),
+        "Topics, services and timers": ("rcl_cxx/qos", "rcl_cxx/publisher", "rcl_cxx/subscription", "rcl_cxx/service", "rcl_cxx/timer"),
     }),
     ("plugin_api_types", "Plugin API: types", {
         "Errors": ("ur_ros_rtde_trajectory/error",),
@@ -38,7 +44,8 @@ PAGES: Sequence[Tuple[str, str, Dict[str, Sequence[str]]]] = (
 INTRODUCTION = """\
 What the headers declare for authors of plugins. [Writing a plugin](../docs/use/writing_a_plugin.md) is the tutorial,
 [Plugins](../docs/use/plugins.md) describes how goals are executed. [Plugin API](plugin_api.md) has the classes to derive from and those
-that plugins use, [Plugin API: types](plugin_api_types.md) the types of their arguments and values."""
+that plugins use, [Plugin API: ROS interfaces](plugin_api_ros.md) the topics, services, timers and parameters of `host.node()`,
+[Plugin API: types](plugin_api_types.md) the types of their arguments and values."""
 GUIDES = ("writing_a_plugin", "plugins")  # in docs/use
 EXAMPLES = ("ur_ros_rtde_tutorials/src", "ur_ros_rtde_gripper_commands/src", "ur_ros_rtde_commands/src")
 _SENTENCE = re.compile(r".+?\.(?=\s|$)", re.S)
