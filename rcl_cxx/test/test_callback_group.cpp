@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <future>
+#include <rcl_cxx_test/client.hpp>
 #include <test_msgs/msg/empty.hpp>
+#include <test_msgs/srv/empty.hpp>
 #include <thread>
 
 #include "action_fixture.hpp"
@@ -86,6 +88,26 @@ TEST_F(CallbackGroupTest, MessagesDoNotWaitForTheCallbackOfAGoalRequest)
     publisher->publish(test_msgs::msg::Empty());
     return received > 0;
   }));
+  ends_.set_value();
+  EXPECT_TRUE(get(std::move(response)));
+}
+
+TEST_F(CallbackGroupTest, ServicesAndTimersDoNotWaitForTheCallbackOfAGoalRequest)
+{
+  using Empty = test_msgs::srv::Empty;
+  serve_with_group();
+  std::atomic<int> requests{0};
+  std::atomic<int> ticks{0};
+  const auto service = node->create_service<Empty>(
+      "empty", [&](const Empty::Request &, Empty::Response &) { ++requests; },
+      rcl_cxx::QoS::services_default(), group);
+  const auto timer = node->create_wall_timer(std::chrono::milliseconds(1), [&] { ++ticks; }, group);
+  const auto service_client = rcl_cxx::create_client<Empty>(*node, "empty");
+  ASSERT_TRUE(service_client->wait_for_service(kLimit));
+  auto response = send_one_that_blocks(1);
+  const int before = ticks;
+  service_client->async_send_request({}, [](const Empty::Response &) {});
+  EXPECT_TRUE(eventually([&] { return requests > 0 && ticks > before; }));
   ends_.set_value();
   EXPECT_TRUE(get(std::move(response)));
 }

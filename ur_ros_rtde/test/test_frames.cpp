@@ -15,6 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 constexpr double half_turn = std::numbers::pi;
+constexpr double quarter_turn = 0.5 * std::numbers::pi;
 const FrameTree::Clock::time_point now = FrameTree::Clock::time_point(std::chrono::hours(1));
 
 /// Turned about z.
@@ -40,30 +41,30 @@ void expect_near(const Expected<Vector6> & pose, const Vector6 & expected)
   }
 }
 
-/// base_link is turned by 180 degrees to base, as in the description of the arm; the table stands in `world`.
+/// The base is turned by 90 degrees in base_link; the table stands in `world`.
 FrameTree cell()
 {
   FrameTree tree;
   tree.add(transform("world", "base_link", {1.0, 0.0, 0.5}), std::nullopt);
-  tree.add(transform("base_link", "base", {0.0, 0.0, 0.0}, half_turn), std::nullopt);
+  tree.add(transform("base_link", "base", {0.0, 0.0, 0.0}, quarter_turn), std::nullopt);
   tree.add(transform("world", "table", {1.0, 2.0, 0.5}), std::nullopt);
-  tree.add(transform("table", "part", {0.1, 0.0, 0.02}, half_turn / 2.0), now);
+  tree.add(transform("table", "part", {0.1, 0.0, 0.02}, quarter_turn), now);
   return tree;
 }
 
 TEST(FrameTreeTest, GoesUpAndDown)
 {
   const FrameTree tree = cell();
-  expect_near(tree.pose("base_link", "base", now), {0.0, 0.0, 0.0, 0.0, 0.0, half_turn});
-  expect_near(tree.pose("world", "base", now), {1.0, 0.0, -0.5, 0.0, 0.0, half_turn});
-  expect_near(tree.pose("part", "base", now), {-0.1, -2.0, 0.02, 0.0, 0.0, -half_turn / 2.0});
+  expect_near(tree.pose("base_link", "base", now), {0.0, 0.0, 0.0, 0.0, 0.0, -quarter_turn});
+  expect_near(tree.pose("world", "base", now), {0.0, 1.0, -0.5, 0.0, 0.0, -quarter_turn});
+  expect_near(tree.pose("part", "base", now), {2.0, -0.1, 0.02, 0.0, 0.0, 0.0});
 }
 
 TEST(FrameTreeTest, UsesTheNewestTransform)
 {
   FrameTree tree = cell();
-  tree.add(transform("table", "part", {0.3, 0.0, 0.02}, half_turn / 2.0), now);
-  expect_near(tree.pose("part", "base", now), {-0.3, -2.0, 0.02, 0.0, 0.0, -half_turn / 2.0});
+  tree.add(transform("table", "part", {0.3, 0.0, 0.02}, quarter_turn), now);
+  expect_near(tree.pose("part", "base", now), {2.0, -0.3, 0.02, 0.0, 0.0, 0.0});
 }
 
 TEST(FrameTreeTest, NamesWhatIsMissing)
@@ -102,7 +103,7 @@ TEST(FrameTreeTest, IgnoresWhatIsNoTransform)
   no_rotation.transform.rotation.w = 0.0;
   tree.add(no_rotation, now);
   tree.add(transform("table", "part", {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}), now);
-  expect_near(tree.pose("part", "base", now), {-0.1, -2.0, 0.02, 0.0, 0.0, -half_turn / 2.0});
+  expect_near(tree.pose("part", "base", now), {2.0, -0.1, 0.02, 0.0, 0.0, 0.0});
 }
 
 TEST(InBaseTest, KeepsAnOrientationThatIsNotValid)

@@ -43,11 +43,13 @@ class VisualServo : public ur_ros_rtde::Command<action::VisualServo> {
   void on_load(CommandHost & host) override
   {
     camera_ = host.node().create_subscription<PoseStamped>(
-        "visual_servo/target", rcl_cxx::QoS::best_effort(1), [this, &host](const PoseStamped & message) {
+        "visual_servo/target", rcl_cxx::QoS::best_effort(1),
+        [this, &host](const PoseStamped & message) {
           Expected<StreamTarget> target = ur_ros_rtde::pose_target(message, host.options().tf_prefix);
           const std::lock_guard lock(mutex_);
           newest_ = {newest_.number + 1, std::move(target)};
-        });
+        },
+        host.callbacks());
   }
   void on_unload() override { camera_.reset(); }
 

@@ -56,11 +56,11 @@ def test_the_peg_is_moved_to_a_hole_that_tf_has(robot, simulator):
     x, y, z = position(simulator)
     hole = TransformStamped(child_frame_id="hole")
     hole.header.frame_id = "base"
-    hole.transform.translation = Vector3(x=x + 0.06, y=y, z=z - SURFACE)
+    hole.transform.translation = Vector3(x=x + 0.055, y=y, z=z - SURFACE)  # 5 mm beside the hole
     hole.transform.rotation = Quaternion(z=math.sqrt(0.5), w=math.sqrt(0.5))  # as the tool
     publisher = robot.node.create_publisher(TFMessage, "/tf_static", TRANSIENT_LOCAL)
     publisher.publish(TFMessage(transforms=[hole]))
-    insert(robot, hole="hole", radius=0.002, depth=0.012).succeeded(60.0)
+    insert(robot, hole="hole", depth=0.012).succeeded(60.0)
     end = position(simulator)
     assert end[2] == pytest.approx(z - SURFACE - 0.012, abs=0.004)
     assert abs(end[0] - x - 0.06) < HALF_WIDTH + 0.001 and abs(end[1] - y) < HALF_WIDTH + 0.001

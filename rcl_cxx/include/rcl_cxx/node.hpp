@@ -70,21 +70,25 @@ class Node {
     return std::make_shared<Subscription<M>>(impl_, topic, qos, std::forward<F>(callback), std::move(group));
   }
 
-  /// `callback` is called as callback(const S::Request &, S::Response &).
+  /// `callback` is called as callback(const S::Request &, S::Response &), in `group`; default: that of the
+  /// node.
   template <typename S, typename F>
   std::shared_ptr<Service<S>> create_service(const std::string & service, F && callback,
-                                             const QoS & qos = QoS::services_default())
+                                             const QoS & qos = QoS::services_default(),
+                                             CallbackGroup::SharedPtr group = {})
   {
-    return std::make_shared<Service<S>>(impl_, std::forward<F>(callback), service, qos);
+    return std::make_shared<Service<S>>(impl_, std::forward<F>(callback), service, qos, std::move(group));
   }
 
   /// A group for callbacks that must not wait for those of this node; see CallbackGroup.
   CallbackGroup::SharedPtr create_callback_group() { return std::make_shared<CallbackGroup>(); }
 
-  /// The first call is one period from now. @throws Error for a period <= 0.
-  std::shared_ptr<Timer> create_wall_timer(std::chrono::nanoseconds period, std::function<void()> callback)
+  /// The first call is one period from now. `callback` runs in `group`; default: that of the node. @throws
+  /// Error for a period <= 0.
+  std::shared_ptr<Timer> create_wall_timer(std::chrono::nanoseconds period, std::function<void()> callback,
+                                           CallbackGroup::SharedPtr group = {})
   {
-    return std::make_shared<Timer>(impl_, period, std::move(callback));
+    return std::make_shared<Timer>(impl_, period, std::move(callback), std::move(group));
   }
 
   template <typename A>

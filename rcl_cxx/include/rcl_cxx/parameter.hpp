@@ -8,6 +8,7 @@
 #include "rcl_cxx/parameter_value.hpp"
 
 namespace rcl_cxx {
+/// A parameter of a node: its name and its value.
 struct Parameter {
   std::string name;
   ParameterValue value;
@@ -23,6 +24,7 @@ struct FloatingPointRange {
   double step = 0.0;
 };
 
+/// As FloatingPointRange, of integers.
 struct IntegerRange {
   std::int64_t from_value;
   std::int64_t to_value;

@@ -13,6 +13,7 @@ class NodeImpl;
 class PublisherImpl;
 }  // namespace detail
 
+/// A publisher without the type of its messages.
 class PublisherBase {
  public:
   PublisherBase(std::shared_ptr<detail::NodeImpl> node, const rosidl_message_type_support_t * type_support,

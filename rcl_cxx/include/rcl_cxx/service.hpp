@@ -4,7 +4,9 @@
 #include <memory>
 #include <rosidl_typesupport_cpp/service_type_support.hpp>
 #include <string>
+#include <utility>
 
+#include "rcl_cxx/callback_group.hpp"
 #include "rcl_cxx/qos.hpp"
 
 namespace rcl_cxx {
@@ -20,10 +22,11 @@ struct ErasedService {
 };
 }  // namespace detail
 
+/// A service without its type.
 class ServiceBase {
  public:
   ServiceBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedService erased, const std::string & name,
-              const QoS & qos);
+              const QoS & qos, CallbackGroup::SharedPtr group);
   /// Waits for a running callback (see SubscriptionBase).
   virtual ~ServiceBase();
   ServiceBase(const ServiceBase &) = delete;
@@ -35,8 +38,8 @@ class ServiceBase {
   std::shared_ptr<detail::ServiceImpl> impl_;
 };
 
-/// Created by Node::create_service. The callback fills the response, in the executor's thread. If it throws,
-/// the exception is logged and the response is sent as far as it has been filled.
+/// Created by Node::create_service. The callback fills the response, in the thread of its group. If it
+/// throws, the exception is logged and the response is sent as far as it has been filled.
 template <typename S>
 class Service : public ServiceBase {
  public:
@@ -45,7 +48,8 @@ class Service : public ServiceBase {
   using Response = typename S::Response;
 
   template <typename F>
-  Service(std::shared_ptr<detail::NodeImpl> node, F && callback, const std::string & name, const QoS & qos)
+  Service(std::shared_ptr<detail::NodeImpl> node, F && callback, const std::string & name, const QoS & qos,
+          CallbackGroup::SharedPtr group = {})
       : ServiceBase(std::move(node),
                     {rosidl_typesupport_cpp::get_service_type_support_handle<S>(),
                      []() -> std::shared_ptr<void> { return std::make_shared<Request>(); },
@@ -53,7 +57,7 @@ class Service : public ServiceBase {
                      [f = std::forward<F>(callback)](const void * request, void * response) mutable {
                        f(*static_cast<const Request *>(request), *static_cast<Response *>(response));
                      }},
-                    name, qos)
+                    name, qos, std::move(group))
   {
   }
 };

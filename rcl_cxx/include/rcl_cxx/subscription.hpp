@@ -40,6 +40,7 @@ struct ErasedSubscription {
 };
 }  // namespace detail
 
+/// A subscription without the type of its messages.
 class SubscriptionBase {
  public:
   SubscriptionBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedSubscription erased,

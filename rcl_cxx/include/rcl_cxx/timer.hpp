@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 
+#include "rcl_cxx/callback_group.hpp"
+
 namespace rcl_cxx {
 namespace detail {
 class NodeImpl;
@@ -11,14 +13,15 @@ class TimerImpl;
 }  // namespace detail
 
 /// A periodic callback by the steady clock, created by Node::create_wall_timer. The callback is due at start
-/// + n * period, without drift; periods that have been missed are skipped. It runs in the executor's thread.
+/// + n * period, without drift; periods that have been missed are skipped. It runs in the thread of its
+/// group.
 /// All members are thread-safe.
 class Timer {
  public:
   using SharedPtr = std::shared_ptr<Timer>;
 
   Timer(std::shared_ptr<detail::NodeImpl> node, std::chrono::nanoseconds period,
-        std::function<void()> callback);
+        std::function<void()> callback, CallbackGroup::SharedPtr group = {});
   /// Waits for a running callback (see SubscriptionBase).
   ~Timer();
   Timer(const Timer &) = delete;

@@ -81,8 +81,9 @@ bool TimerImpl::is_canceled() const
 }  // namespace detail
 
 Timer::Timer(std::shared_ptr<detail::NodeImpl> node, std::chrono::nanoseconds period,
-             std::function<void()> callback)
-    : impl_(detail::make_waitable<detail::TimerImpl>(std::move(node), period, std::move(callback)))
+             std::function<void()> callback, CallbackGroup::SharedPtr group)
+    : impl_(detail::make_waitable<detail::TimerImpl>(std::move(node), period, std::move(callback),
+                                                     std::move(group)))
 {
 }
 Timer::~Timer()

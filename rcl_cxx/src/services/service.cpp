@@ -14,8 +14,8 @@ namespace rcl_cxx {
 namespace detail {
 class ServiceImpl : public Waitable {
  public:
-  ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
-              const QoS & qos);
+  ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name, const QoS & qos,
+              CallbackGroup::SharedPtr group);
   ~ServiceImpl() override;
 
   const std::string & get_service_name() const noexcept { return name_; }
@@ -33,19 +33,23 @@ class ServiceImpl : public Waitable {
   void respond(const rmw_request_id_t & id, const std::shared_ptr<void> & response);
   rcl_ret_t send(rmw_request_id_t id, void * response) { return rcl_send_response(&service_, &id, response); }
 
+  const CallbackGroup & group(std::size_t) const override { return *group_; }
+
   const ErasedService erased_;
   const ServiceTypeSupport type_support_;
+  const CallbackGroup::SharedPtr group_;
   const std::shared_ptr<ResponseSender> sender_;
   rcl_service_t service_ = rcl_get_zero_initialized_service();
   std::string name_;
 };
 
 ServiceImpl::ServiceImpl(std::shared_ptr<NodeImpl> node, ErasedService erased, const std::string & name,
-                         const QoS & qos)
+                         const QoS & qos, CallbackGroup::SharedPtr group)
     : Waitable(std::move(node), fmt::format("service {}", name)),
       erased_(std::move(erased)),
       type_support_(erased_.type_support),
-      sender_(std::make_shared<ResponseSender>(this->node(), this->node()->default_group()))
+      group_(group ? std::move(group) : this->node()->default_group()),
+      sender_(std::make_shared<ResponseSender>(this->node(), group_))
 {
   rcl_service_options_t options = rcl_service_get_default_options();
   options.qos = qos.get_rmw_qos_profile();
@@ -104,8 +108,9 @@ void ServiceImpl::clear_on_ready_callbacks() noexcept
 }  // namespace detail
 
 ServiceBase::ServiceBase(std::shared_ptr<detail::NodeImpl> node, detail::ErasedService erased,
-                         const std::string & name, const QoS & qos)
-    : impl_(detail::make_waitable<detail::ServiceImpl>(std::move(node), std::move(erased), name, qos))
+                         const std::string & name, const QoS & qos, CallbackGroup::SharedPtr group)
+    : impl_(detail::make_waitable<detail::ServiceImpl>(std::move(node), std::move(erased), name, qos,
+                                                       std::move(group)))
 {
 }
 ServiceBase::~ServiceBase()

@@ -40,6 +40,9 @@ class PluginHost {
 
   /// For parameters, topics, services and timers of a plugin.
   rcl_cxx::Node & node() { return node_; }
+  /// For their callbacks: the thread of this group is that of all plugins, and delays no goal. Without it,
+  /// they run in the thread that accepts the goals of all commands.
+  const rcl_cxx::CallbackGroup::SharedPtr & callbacks() const { return plugin_group_; }
 
   // For the driver
 
@@ -58,6 +61,7 @@ class PluginHost {
  private:
   rcl_cxx::Node & node_;
   rcl_cxx::Publisher<ur_ros_rtde_msgs::msg::GoalRejected>::SharedPtr rejections_;
+  const rcl_cxx::CallbackGroup::SharedPtr plugin_group_;
   const rcl_cxx::CallbackGroup::SharedPtr stop_group_;
   const rcl_cxx::CallbackGroup::SharedPtr creation_group_;
   Goals goals_;

@@ -15,6 +15,7 @@ PluginHost::PluginHost(rcl_cxx::Node & node, bool servers_on_demand)
       // Transient local: a client may be rejected before its subscription has been matched.
       rejections_(node.create_publisher<ur_ros_rtde_msgs::msg::GoalRejected>(
           "goal_rejections", rcl_cxx::QoS::transient_local(100))),
+      plugin_group_(node.create_callback_group()),
       stop_group_(node.create_callback_group()),
       creation_group_(servers_on_demand ? node.create_callback_group() : nullptr)
 {
@@ -22,7 +23,7 @@ PluginHost::PluginHost(rcl_cxx::Node & node, bool servers_on_demand)
 
 std::vector<const rcl_cxx::CallbackGroup *> PluginHost::groups() const
 {
-  std::vector<const rcl_cxx::CallbackGroup *> groups{stop_group_.get()};
+  std::vector<const rcl_cxx::CallbackGroup *> groups{stop_group_.get(), plugin_group_.get()};
   if (creation_group_) {
     groups.push_back(creation_group_.get());
   }
