@@ -12,7 +12,7 @@ BACKGROUND = True
 DIRECTORIES = {
     "rcl_cxx": ("action", "services", "topics", "executor", "node", "parameters", "context", "events", "rcl_support"),
     "ur_ros_rtde": ("programs", "process", "nodes", "recording", "teleoperation", "state", "diagnostics", "plugins", "streaming",
-                    "goals", "detail"),
+                    "goals", "frames", "detail"),
     "ur_ros_rtde_robot": ("program", "motion", "state", "connection", "script"),
     "ur_ros_rtde_trajectory": ("kinematics", "trajectory", "timing", "solver", "motion", "path"),
     "ur_simulator": ("app", "library", "controller", "world_file", "control_port", "urcap", "primary", "modbus", "robot_api", "dashboard",
