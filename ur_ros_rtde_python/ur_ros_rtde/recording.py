@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Any
 
 import numpy
+from ur_ros_rtde_cli.record import remedy
 
 from .connection import Answer, Connection, ending, own_signals
 from .errors import NoDriver
@@ -65,7 +66,8 @@ class Recording:
         if done.cancel():
             return
         if not self._connection.wait(done, ANSWER_TIMEOUT):
-            raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s")
+            raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s; "
+                           f"{remedy(self._connection.full_name('stop_recording'))}")
         if done.result().success:
             self._stop()
 
