@@ -258,6 +258,38 @@ def test_feedback_that_cannot_be_written_does_not_end_the_wait_for_the_result(mo
             output.result(SimpleNamespace(status=GoalStatus.STATUS_SUCCEEDED, result=ActiveModes()))
 
 
+def assert_that_the_output_is_reported(arguments, **environment):
+    """On a disk that is full."""
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run([find_program("ur_ros_rtde_cli", "ur"), *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                               timeout=TIMEOUT_FACTOR * 60.0, env={**os.environ, **environment})
+    assert ended.returncode == 1 and ended.stderr.splitlines()[-1:] == ["the output cannot be written: No space left on device"], ended
+    assert "Traceback" not in ended.stderr
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["--version"], ["plot", "--help"], ["plugins"], ["call", "move_j", "--show"],
+                                       ["urdf", "--model", "ur10e"]], ids=" ".join)
+def test_an_output_that_cannot_be_written_is_reported(arguments, unbuffered):
+    assert_that_the_output_is_reported(arguments, PYTHONUNBUFFERED=unbuffered)
+
+
+@pytest.mark.parametrize("arguments", [["call", "dashboard/robot_mode", "--json"], ["call", "dashboard/robot_mode"], ["state"]],
+                         ids=" ".join)
+def test_an_answer_that_cannot_be_written_is_reported(running, arguments):
+    assert_that_the_output_is_reported(arguments)
+
+
+def test_a_row_count_that_cannot_be_written_is_reported(slow_recorder):
+    assert_that_the_output_is_reported(["record", "run.csv", "--namespace", "slow", "--time", "0.2"])
+    assert slow_recorder[0] == ["start", "stop"]
+
+
+def test_an_error_that_cannot_be_written_does_not_change_the_exit_code():
+    with open("/dev/full", "w") as full:
+        assert subprocess.run([find_program("ur_ros_rtde_cli", "ur"), "unknown"], stderr=full).returncode == 2
+
+
 def test_starts_the_viewer(monkeypatch):
     code, output = ur("view", "--help", domain=EMPTY_DOMAIN)
     assert code == 0 and "usage: ur view" in output and "--robot" in output, output
