@@ -80,7 +80,7 @@ def ending(what: str) -> Iterator[None]:
 
 
 class Connection:
-    """`timeout` limits the waits for the driver and for its responses, `result_timeout` those for results, in s."""
+    """`timeout` limits the waits for the driver, its responses and its samples, `result_timeout` those for results, in s."""
 
     def __init__(self, namespace: str, timeout: float, result_timeout: float):
         fastdds_profile.use()
