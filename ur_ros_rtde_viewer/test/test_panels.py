@@ -160,10 +160,11 @@ def feed(panel, begin, end, period=0.004):
 
 
 def test_plots_keep_the_last_30_s_of_a_day(plots):
-    feed(plots, 86400.0 - 2.0 * DURATION, 86400.0, 0.03)
+    end = 86400.0
+    feed(plots, end - 2.0 * DURATION, end, 0.03)
     time, *values = plots.data
     assert len(values) == 15 and len(time) <= DURATION / SAMPLE_PERIOD + 1
-    assert time[-1] == 0.0 and -DURATION <= time[0] <= -DURATION + 1.0 and values[0][-1] == pytest.approx(86400.0, abs=0.1)
+    assert time[-1] == 0.0 and -DURATION <= time[0] <= -DURATION + 1.0 and values[0][-1] == pytest.approx(end, abs=0.1)
 
 
 def test_plots_begin_again_when_the_clock_does(plots):
