@@ -129,7 +129,9 @@ TYPE_AND_CLICK = """([texts, events]) => {
     input.dispatchEvent(new Event("input", {bubbles: true}))
   }
   for (const [selector, type] of events)
-    document.querySelector(selector).dispatchEvent(new PointerEvent(type, {bubbles: true, cancelable: true, button: 0}))
+    document.querySelector(selector).dispatchEvent(type === "keydown" ?
+        new KeyboardEvent(type, {key: "Escape", code: "Escape", bubbles: true}) :
+        new PointerEvent(type, {bubbles: true, cancelable: true, button: 0}))
 }"""
 STOP = "div:has(> .stop-style) + div button"
 
@@ -164,11 +166,11 @@ def test_an_edit_arrives_before_the_click_that_follows_it(tab, form):
     assert form.taken == 2 * ["1.57"]
 
 
-@pytest.mark.parametrize("event", ["click", "pointerdown"])
+@pytest.mark.parametrize("event", [(STOP, "click"), (STOP, "pointerdown"), ("body", "keydown")], ids=["click", "pointerdown", "key"])
 def test_stop_does_not_wait_for_edits_and_drops_the_clicks_that_do(tab, form, viewer, monkeypatch, event):
     stopped = threading.Event()
     monkeypatch.setattr(viewer.viewer.control, "stop", stopped.set)
-    tab.page.evaluate(TYPE_AND_CLICK, [["1"], [(form.button, "click"), (STOP, event)]])
+    tab.page.evaluate(TYPE_AND_CLICK, [["1"], [(form.button, "click"), event]])
     assert stopped.wait(LIMIT)
     tab.page.wait_for_timeout(3e3 * PAUSE)
     tab.page.dispatch_event(STOP, "pointerup")

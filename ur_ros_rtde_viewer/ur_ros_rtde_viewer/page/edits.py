@@ -17,7 +17,7 @@ const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput], 
 let edited = -Infinity, passing = null;
 const note = event => {{
   if (event.type === 'input' || event.target.closest?.(editors)) edited = performance.now();
-  if (event.key === 'Escape' || event.target.closest?.('{style.STOP_BUTTON}')) waiting.clear();
+  if (window.isStopPress(event)) waiting.clear();
 }};
 for (const type of ['input', 'keydown', 'pointerdown', 'pointerup', 'click']) window.addEventListener(type, note, true);
 const pass = button => {{
