@@ -11,7 +11,7 @@ from ur_ros_rtde_viewer.control.jog import HOLD_RATE
 from ur_ros_rtde_viewer.page import uploads
 from ur_ros_rtde_viewer.page.edits import PAUSE
 from ur_ros_rtde_viewer.page.heartbeat import ANSWER_TIMEOUT, LOSS_TIMEOUT, NO_ANSWER, NO_CONNECTION
-from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
+from ur_ros_rtde_viewer.panels.replay_panel import NO_FILE, ReplayPanel
 
 BROWSER = True
 MEASURES_TIME = True
@@ -43,6 +43,7 @@ def test_a_large_file_is_not_uploaded_where_there_is_stop(tab, viewer):
     until(lambda: "csv" in replay.message.content, "the file")
     until(lambda: "Reading" not in replay.message.content, "the end of reading")
     assert replay.message.content.startswith("small.csv has no columns")
+    assert replay._upload.value is NO_FILE, "its content is kept"
     tab.page.get_by_text("Where there is STOP").wait_for(state="hidden")
 
 

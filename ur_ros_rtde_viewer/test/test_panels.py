@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banners
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
-from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
+from ur_ros_rtde_viewer.panels.replay_panel import NO_FILE, ReplayPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, signal_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
 from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState, Signals
@@ -209,7 +209,9 @@ def test_a_recording_that_fails_for_an_unknown_reason_is_reported(replay, caplog
 def test_the_content_of_an_upload_is_not_kept(replay):
     replay._upload._impl.value = UploadedFile("run.csv", b"a,b")
     replay._replay_upload()
-    assert replay._upload.value.content == b""
+    assert replay._upload.value is NO_FILE
+    with pytest.raises(TypeError):  # otherwise, the public setter can be used
+        replay._upload.value = UploadedFile("", b"")
     replay._replay_upload()  # of an upload that arrived together with the first one
     replay.close()
     assert "run.csv has no columns" in replay.message.content
