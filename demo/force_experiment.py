@@ -131,8 +131,8 @@ class Experiment:
             standstill = next((later["timestamp"] for later in self.recorder.rows[stops[0][0]:]
                                if max(abs(later[velocity]) for velocity in VELOCITIES) < STANDSTILL), math.nan)
             peak = max((later[force_column("z")] for later in self.recorder.rows[stops[0][0]:]), key=abs)
-            print(f"stop:       {row[force_column('z')]:.1f} N along Z at t = {row['timestamp']:.3f} s, the first sample above the "
-                  f"threshold of {self.options.threshold:g} N")
+            print(f"stop:       {row[force_column('z')]:.1f} N along Z at t = {row['timestamp']:.3f} s, the first recorded sample above "
+                  f"the threshold of {self.options.threshold:g} N; the driver, which reads more samples, stopped at {result.force:.1f} N")
             print(f"standstill: {1000 * (standstill - row['timestamp']):.0f} ms later; the force grew to {peak:.1f} N while the arm "
                   "decelerated")
         print(f"distance:   {result.distance:.3f} m")

@@ -49,6 +49,9 @@ def test_ignores_two_pushes_and_stops_on_contact(tmp_path):
     assert result.returncode == 0, result.stdout + result.stderr
     assert result.stdout.count("ignored: ") == 2
     assert "success (0)" in result.stdout and "while the arm decelerated" in result.stdout
+    recorded, of_driver, of_result = (float(re.search(rf"{text} (-?[\d.]+) N", result.stdout)[1])
+                                      for text in ("stop:      ", "the driver, .*, stopped at", "stopped by"))
+    assert of_driver == of_result and min(abs(recorded), abs(of_driver)) >= 20.0
     assert (folder / "force_experiment.png").read_bytes().startswith(PNG)
     with (folder / "force_experiment.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

@@ -33,6 +33,7 @@ class Example : public Base<T> {
       : value_(value), more_{std::move(more)}
   {
   }
+  Example(const Other & other) : value_(acquire(*other.value_)) {}
   virtual ~Example() = default;
   Example(const Example &) = delete;
 
@@ -99,9 +100,10 @@ def test_definitions_forward_declarations_and_details_are_left_out(found):
 def test_the_public_members_of_a_class_have_no_bodies_and_initializers(found):
     assert found["Example"].text == "template <typename T>\nclass Example : public Base<T>"
     assert [member.text for member in found["Example"].members] == [
-        "using Value = T;", "explicit Example(int value = 1, std::vector<int> more = {});", "int value() const;",
+        "using Value = T;", "explicit Example(int value = 1, std::vector<int> more = {});", "Example(const Other & other);",
+        "int value() const;",
         "int other(const std::string & text = \"};\",\n          char c = '}') const;", "struct Nested"]
-    assert [member.title for member in found["Example"].members] == ["", "", "Values", "", ""]
+    assert [member.title for member in found["Example"].members] == ["", "", "", "Values", "", ""]
     nested = found["Example"].members[-1].members
     assert [(member.text, member.comment) for member in nested] == [("double time = 1.0;", "s"), ("std::function<void(int)> call{};", "")]
 

@@ -184,13 +184,14 @@ def _declaration(item: _Item) -> Optional[Declaration]:
         return None
     if found := _ALIAS.match(text):
         return made("alias", f"{text};", found[1])
-    plain = _without_templates(re.sub(r"^template ", "", text))
+    head = text if body is None else _INITIALIZERS.sub(")", text)
+    plain = _without_templates(re.sub(r"^template ", "", head))
     found = _FUNCTION.search(plain if "operator" in plain else plain.partition("=")[0])
     if found is None or "(*" in plain:
         return made("variable", f"{' '.join(text.split())};")
     if "::" in found[1] or not item.comment and re.match(r"~|operator==?$", found[1]) or "&&) noexcept" in text:
         return None
-    return made("function", f"{text if body is None else _INITIALIZERS.sub(')', text)};", found[1])
+    return made("function", f"{head};", found[1])
 
 
 def _enumerators(body: str) -> List[Declaration]:

@@ -7,7 +7,7 @@ import re
 import signal
 import subprocess
 import sys
-import time
+import threading
 from types import SimpleNamespace
 
 import pytest
@@ -16,7 +16,7 @@ from programs import Process, find_program
 from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
-from support import wait_for
+from support import TIMEOUT_FACTOR, wait_for
 from ur_program import DISCOVERY, EMPTY_DOMAIN, output_on_terminal, ur
 from ur_ros_rtde_cli import print_state, record, view
 from ur_ros_rtde_cli.errors import CliError
@@ -165,12 +165,13 @@ def test_record_reports_the_number_of_rows(running, tmp_path):
 
 @pytest.fixture
 def slow_recorder():
-    """Services in the namespace slow: start_recording responds late. Returns the names of the requests and whether they succeed."""
-    client, requests, answer = Client("slow"), [], {"success": True}
+    """Services in the namespace slow. Returns the names of the requests, and what is answered to start_recording: `success`, and when:
+    after `delay` s, or as soon as the event `released` is set."""
+    client, requests, answer = Client("slow"), [], {"success": True, "delay": 1.0, "released": threading.Event()}
 
     def start(_, response):
         requests.append("start")
-        time.sleep(1.0)
+        answer["released"].wait(answer["delay"])
         response.success, response.message = answer["success"], "another recording runs"
         return response
 
@@ -182,6 +183,7 @@ def slow_recorder():
     client.node.create_service(StartRecording, "start_recording", start)
     client.node.create_service(StopRecording, "stop_recording", stop)
     yield requests, answer
+    answer["released"].set()
     client.close()
 
 
@@ -194,6 +196,33 @@ def test_a_signal_during_the_request_leaves_no_recording_running(slow_recorder, 
     process.interrupt()
     assert process.wait(20.0) == code, process.output()
     assert requests == expected and ("another recording runs" in process.output()) == (not success)
+
+
+def late_recording(slow_recorder, success):
+    """`ur record` when it has waited too long for the answer to start_recording."""
+    slow_recorder[1].update(success=success, delay=TIMEOUT_FACTOR * 60.0)
+    code = f"from ur_ros_rtde_cli import main, record; record.RESPONSE_TIMEOUT = {2.0 * TIMEOUT_FACTOR}; exit(main.main())"
+    process = Process([sys.executable, "-c", code, "record", "run.csv", "--namespace", "slow"])
+    process.wait_for_output("start_recording did not respond", 30.0)
+    return process
+
+
+@pytest.mark.parametrize("success, expected, message", [(True, ["start", "stop"], "0 rows"), (False, ["start"], "another recording runs")])
+def test_a_recording_that_starts_late_is_stopped(slow_recorder, success, expected, message):
+    requests, answer = slow_recorder
+    process = late_recording(slow_recorder, success)
+    answer["released"].set()
+    assert process.wait(20.0) == 1 and message in process.output(), process.output()
+    assert requests == expected
+
+
+@pytest.mark.parametrize("is_interrupted, code", [(False, 1), (True, 128 + signal.SIGINT)])
+def test_a_recording_that_may_still_start_is_named_with_the_remedy(slow_recorder, is_interrupted, code):
+    process = late_recording(slow_recorder, True)
+    if is_interrupted:
+        process.interrupt()
+    assert process.wait(20.0) == code
+    assert "end it: ros2 service call /slow/stop_recording ur_ros_rtde_msgs/srv/StopRecording" in process.output(), process.output()
 
 
 def test_a_recording_whose_message_cannot_be_written_ends(slow_recorder):
@@ -227,6 +256,38 @@ def test_feedback_that_cannot_be_written_does_not_end_the_wait_for_the_result(mo
         output.feedback(SimpleNamespace(feedback=ActiveModes()))
         with pytest.raises(OSError, match="no space"):
             output.result(SimpleNamespace(status=GoalStatus.STATUS_SUCCEEDED, result=ActiveModes()))
+
+
+def assert_that_the_output_is_reported(arguments, **environment):
+    """On a disk that is full."""
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run([find_program("ur_ros_rtde_cli", "ur"), *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                               timeout=TIMEOUT_FACTOR * 60.0, env={**os.environ, **environment})
+    assert ended.returncode == 1 and ended.stderr.splitlines()[-1:] == ["the output cannot be written: No space left on device"], ended
+    assert "Traceback" not in ended.stderr
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["--version"], ["plot", "--help"], ["plugins"], ["call", "move_j", "--show"],
+                                       ["urdf", "--model", "ur10e"]], ids=" ".join)
+def test_an_output_that_cannot_be_written_is_reported(arguments, unbuffered):
+    assert_that_the_output_is_reported(arguments, PYTHONUNBUFFERED=unbuffered)
+
+
+@pytest.mark.parametrize("arguments", [["call", "dashboard/robot_mode", "--json"], ["call", "dashboard/robot_mode"], ["state"]],
+                         ids=" ".join)
+def test_an_answer_that_cannot_be_written_is_reported(running, arguments):
+    assert_that_the_output_is_reported(arguments)
+
+
+def test_a_row_count_that_cannot_be_written_is_reported(slow_recorder):
+    assert_that_the_output_is_reported(["record", "run.csv", "--namespace", "slow", "--time", "0.2"])
+    assert slow_recorder[0] == ["start", "stop"]
+
+
+def test_an_error_that_cannot_be_written_does_not_change_the_exit_code():
+    with open("/dev/full", "w") as full:
+        assert subprocess.run([find_program("ur_ros_rtde_cli", "ur"), "unknown"], stderr=full).returncode == 2
 
 
 def test_starts_the_viewer(monkeypatch):

@@ -9,6 +9,7 @@ import signal
 import sys
 from typing import Any, List, Optional
 
+from . import output
 from .errors import CliError
 from .interruptions import Interrupted
 
@@ -132,28 +133,13 @@ def main(arguments: Optional[List[str]] = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     if COMPLETION_VARIABLE in os.environ:
         _complete()
-    command = arguments[0] if arguments else ""
     if _belongs_to_checkout(arguments) and _checkout_script() is not None:
         os.execv(str(_checkout_script()), [str(_checkout_script()), *arguments])
     try:
-        if not arguments:
-            _make_parser().print_help()
-            return 2
-        if command.startswith("-"):
-            _make_parser().parse_args(arguments)
-        if command not in COMMANDS:
-            raise _unknown_command(command)
-        if command == VIEW:
-            from . import view  # imported here because the other commands do not need it
-            view.execute(arguments[1:])
-        options = _parse_arguments(command, arguments[1:])
-        if command not in WITHOUT_NODES:
-            from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS
-            lazy_imports.enable()
-            fastdds_profile.use()
-        return options.run(options)
+        with output.written():
+            return _run(arguments)
     except CliError as error:
-        print(error, file=sys.stderr)
+        output.print_error(error)
         return error.exit_status
     except Interrupted as interrupted:
         return interrupted.exit_code
@@ -162,13 +148,24 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except BrokenPipeError:
         return Interrupted(signal.SIGPIPE).exit_code
     finally:
-        _drop_unwritable_output()
+        output.drop_unwritable()
 
 
-def _drop_unwritable_output() -> None:
-    """Discards output that cannot be written. Python would write it again at exit and report the failure."""
-    for stream in filter(None, (sys.stdout, sys.stderr)):
-        try:
-            stream.flush()
-        except OSError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+def _run(arguments: List[str]) -> int:
+    if not arguments:
+        _make_parser().print_help()
+        return 2
+    command = arguments[0]
+    if command.startswith("-"):
+        _make_parser().parse_args(arguments)
+    if command not in COMMANDS:
+        raise _unknown_command(command)
+    if command == VIEW:
+        from . import view  # imported here because the other commands do not need it
+        view.execute(arguments[1:])
+    options = _parse_arguments(command, arguments[1:])
+    if command not in WITHOUT_NODES:
+        from . import fastdds_profile, lazy_imports  # imported here because --help does not need ROS
+        lazy_imports.enable()
+        fastdds_profile.use()
+    return options.run(options)

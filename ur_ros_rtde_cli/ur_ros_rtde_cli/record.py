@@ -22,6 +22,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="rows per second (default: one for each RTDE package)")
 
 
+class _NoResponse(OperationFailed):
+    """The request may still be executed."""
+
+
+def remedy(service: str) -> str:
+    """Returns how to end a recording that may be running. `service`: full name of stop_recording."""
+    return f"if it is running, end it: ros2 service call {service} ur_ros_rtde_msgs/srv/StopRecording"
+
+
 def _send(session: Any, kind: Any, name: str, **request: Any) -> Any:
     """Sends a request and returns the future of its response."""
     client = session.node.create_client(kind, name)
@@ -34,7 +43,7 @@ def _send(session: Any, kind: Any, name: str, **request: Any) -> Any:
 def _response(session: Any, future: Any, name: str) -> Any:
     response = session.result(future, RESPONSE_TIMEOUT)
     if response is None:
-        raise OperationFailed(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
+        raise _NoResponse(f"the service {name} did not respond within {RESPONSE_TIMEOUT:g} s")
     if not response.success:
         raise OperationFailed(response.message)
     return response
@@ -49,6 +58,18 @@ def _stop(session: Any, kind: Any) -> Any:
     return _response(session, request, "stop_recording")
 
 
+def _end(session: Any, kind: Any, started: Any, file: pathlib.Path) -> Any:
+    """Stops the recording if its start is confirmed: without that, it may be a recording of another user."""
+    from .feedback import write  # imported here because --help does not need ROS
+    try:
+        _response(session, started, "start_recording")
+        return _stop(session, kind)
+    except (_NoResponse, Interrupted):
+        service = session.node.resolve_service_name("stop_recording")
+        write(f"the end of the recording {file} is not confirmed: {remedy(service)}\n")
+        raise
+
+
 def run(options: argparse.Namespace) -> int:
     from ur_ros_rtde_msgs.srv import StartRecording, StopRecording  # imported here, as below, because --help does not need ROS
 
@@ -57,12 +78,16 @@ def run(options: argparse.Namespace) -> int:
     with session(options.namespace) as created:
         started = _send(created, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
                         frequency=options.frequency)
+        exit_code = 0
         try:
             _response(created, started, "start_recording")
             write("recording" + ("" if options.time is not None else ", press Ctrl-C to end") + "\n")
             created.wait(lambda: None, options.time)
         except Interrupted:
-            _response(created, started, "start_recording")  # only a recording that was started is stopped: it may be that of another user
-        stopped = _stop(created, StopRecording)
+            pass
+        except _NoResponse as error:
+            write(f"{error}: a recording that starts late is stopped\n")
+            exit_code = error.exit_status
+        stopped = _end(created, StopRecording, started, options.file.absolute())
         print(f"{stopped.filename}: {stopped.rows} rows" + (f", {stopped.lost} lost" if stopped.lost else ""))
-        return 0
+        return exit_code

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+import threading
 import time
 
 from action_msgs.msg import GoalStatus
@@ -26,8 +27,8 @@ RECEIVED, SET = "received ", "set"
 
 class FakeDriver:
     """Starts the program. Its behavior: `interrupt`, name of the request after which it sends SIGINT to the test, as Ctrl-C; `delay`, name
-    of the request that it answers 1 s late; `failures`, message by name of what fails; `reject`, name of an action. An interrupted or
-    delayed action has ended by then, and its result is on its way."""
+    of the request that it answers 1 s late; `hold`, of one that it answers after the next set(); `failures`, message by name of what
+    fails; `reject`, name of an action. An interrupted or delayed action has ended by then, and its result is on its way."""
 
     def __init__(self):
         self._process = Process([sys.executable, __file__], {"PYTHONPATH": os.pathsep.join(sys.path)}, stdin=True)
@@ -52,6 +53,7 @@ class FakeDriver:
 class _Program:
     def __init__(self):
         self._behavior = {}
+        self._released = threading.Event()
         self._client = Client(NAMESPACE, name="fake_driver")
         node = self._client.node
         node.create_service(StartRecording, "start_recording", lambda _, response: self._respond("start_recording", response))
@@ -62,6 +64,7 @@ class _Program:
     def run(self):
         with contextlib.closing(self._client), contextlib.suppress(KeyboardInterrupt):
             for line in sys.stdin:
+                self._released.set()
                 self._behavior.update(json.loads(line))
                 print(SET, flush=True)
 
@@ -72,6 +75,9 @@ class _Program:
             time.sleep(0.3)
         if self._behavior.get("delay") == name:
             time.sleep(1.0)
+        if self._behavior.get("hold") == name:
+            self._released.clear()
+            self._released.wait()
 
     def _failure(self, name):
         return self._behavior.get("failures", {}).get(name, "")

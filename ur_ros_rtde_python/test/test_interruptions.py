@@ -9,7 +9,7 @@ import pytest
 from fake_driver import NAMESPACE, FakeDriver
 from programs import Process
 from support import HOME, TIMEOUT_FACTOR, wait_for
-from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, goal
+from ur_ros_rtde import CommandFailed, NoDriver, Rejected, Robot, Timeout, goal, recording
 from ur_ros_rtde.connection import Connection
 
 
@@ -118,14 +118,26 @@ def test_an_interrupted_start_leaves_no_recording_of_this_program_running(fake, 
     assert fake.received == expected
 
 
-def test_a_recording_that_starts_late_is_stopped(fake):
-    fake.set(delay="start_recording")
+def requests_of_a_late_recording(fake):
+    """With a timeout of 0.9 s. Returns the requests."""
     with Robot(NAMESPACE, timeout=TIMEOUT_FACTOR * 20.0) as robot:
         wait_for(lambda: robot._connection.served().get("move_j"), 20.0, "the driver")
         robot._connection.timeout = 0.9
         with pytest.raises(NoDriver, match="did not respond"), robot.record("run.csv"):
             pytest.fail("the block was executed")
-    assert fake.received == ["start_recording", "stop_recording"]
+    return fake.received
+
+
+def test_a_recording_that_starts_late_is_stopped(fake):
+    fake.set(delay="start_recording")
+    assert requests_of_a_late_recording(fake) == ["start_recording", "stop_recording"]
+
+
+def test_a_recording_that_may_still_start_is_named_with_the_remedy(fake, monkeypatch, caplog):
+    monkeypatch.setattr(recording, "ANSWER_TIMEOUT", 0.0)
+    fake.set(hold="start_recording")
+    assert requests_of_a_late_recording(fake) == ["start_recording"]
+    assert re.search("the end of the recording .*run.csv is not confirmed: .* end it: ros2 service call /fake/stop_recording", caplog.text)
 
 
 def test_a_recording_whose_end_is_interrupted_is_stopped(fake, arm, monkeypatch):

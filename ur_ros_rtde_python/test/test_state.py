@@ -1,6 +1,8 @@
 """Reads the state of the robot: attributes, streams and recordings."""
 
+import itertools
 import sys
+import threading
 import time
 
 import numpy as np
@@ -90,6 +92,33 @@ def test_a_stream_can_be_left_early(arm):
         assert sample.wrench.shape == (6,)
         break
     assert arm.state.joint_positions.shape == (6,)
+
+
+def test_a_stream_goes_on_after_a_pause_that_is_shorter_than_the_timeout():
+    with Robot("paused", timeout=TIMEOUT_FACTOR * 20.0) as robot:
+        kind, seconds, ended = interface("sensor_msgs/msg/JointState"), itertools.count(1), threading.Event()
+        publisher = robot._connection.node.create_publisher(kind, "actual_joint_states", 10)
+
+        def publish():
+            message = kind(position=[0.0] * 6)
+            message.header.stamp.sec = next(seconds)
+            publisher.publish(message)
+            return message.header.stamp.sec
+
+        def publish_until_the_end():
+            while not ended.wait(0.05):
+                publish()
+
+        publishing = threading.Thread(target=publish_until_the_end)
+        publishing.start()
+        stream = robot.state.stream("joint_positions", duration=1e6)
+        next(stream)
+        ended.set()
+        publishing.join()
+        last = publish()
+        assert any(sample.time == last for sample in stream)
+        threading.Timer(3.0, publish).start()
+        assert next(stream).time == last + 1
 
 
 def test_an_unknown_field_of_a_stream_is_reported_with_the_known_ones(arm):

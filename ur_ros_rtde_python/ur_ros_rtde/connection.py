@@ -79,8 +79,19 @@ def ending(what: str) -> Iterator[None]:
             raise
 
 
+def end_even_if_interrupted(what: str, function: Callable[[], object], may_repeat: Callable[[], bool] = lambda: True) -> None:
+    """Calls `function`, which ends `what`. Ctrl-C propagates after a second call, if `may_repeat` returns true."""
+    try:
+        function()
+    except (KeyboardInterrupt, SystemExit):
+        if may_repeat():
+            with ending(what):
+                function()
+        raise
+
+
 class Connection:
-    """`timeout` limits the waits for the driver and for its responses, `result_timeout` those for results, in s."""
+    """`timeout` limits the waits for the driver, its responses and its samples, `result_timeout` those for results, in s."""
 
     def __init__(self, namespace: str, timeout: float, result_timeout: float):
         fastdds_profile.use()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from .commands import Commands, StartedCommands
-from .connection import Connection, ending
+from .connection import Connection, end_even_if_interrupted, ending
 from .errors import RobotError
 from .goal import Goal, Progress
 
@@ -51,12 +51,7 @@ class Modes:
                 with ending("force mode"):
                     self._end_force_mode()
             raise
-        try:
-            self._end_force_mode()
-        except (KeyboardInterrupt, SystemExit):
-            with ending("force mode"):
-                self._end_force_mode()
-            raise
+        end_even_if_interrupted("force mode", self._end_force_mode)
 
     def _end_force_mode(self) -> None:
         """Ends force mode, over another connection if that of the Robot is closed."""

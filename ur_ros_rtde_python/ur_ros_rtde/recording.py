@@ -10,8 +10,9 @@ from types import TracebackType
 from typing import Any
 
 import numpy
+from ur_ros_rtde_cli.record import remedy
 
-from .connection import Answer, Connection, ending, own_signals
+from .connection import Answer, Connection, end_even_if_interrupted, ending, own_signals
 from .errors import NoDriver
 
 ANSWER_TIMEOUT = 10.0  # s, for the answer to an interrupted start
@@ -45,6 +46,7 @@ class Recording:
     def __init__(self, connection: Connection, file: str | os.PathLike[str], fields: Sequence[str], frequency: float):
         self._connection, self._fields, self._frequency = connection, list(fields), frequency
         self.file = pathlib.Path(file).absolute()
+        self._name = f"the recording {self.file}"
         self.rows = 0  # number of rows, known at the end
         self.lost = 0  # number of packages that are missing in the file
 
@@ -56,7 +58,7 @@ class Recording:
                                       fields=self._fields, frequency=float(self._frequency))
             return self
         except BaseException:
-            with own_signals(), self._ending():
+            with own_signals(), ending(self._name):
                 self._stop_if_started(done)
             raise
 
@@ -65,16 +67,14 @@ class Recording:
         if done.cancel():
             return
         if not self._connection.wait(done, ANSWER_TIMEOUT):
-            raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s")
+            raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s; "
+                           f"{remedy(self._connection.full_name('stop_recording'))}")
         if done.result().success:
             self._stop()
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        with contextlib.nullcontext() if kind is None else self._ending():
+        with contextlib.nullcontext() if kind is None else ending(self._name):
             self._stop()
-
-    def _ending(self) -> contextlib.AbstractContextManager[None]:
-        return ending(f"the recording {self.file}")
 
     def _stop(self) -> None:
         """Stops the recording, over another connection if that of the Robot is closed."""
@@ -89,13 +89,7 @@ class Recording:
             response = self._connection.over_open_connection(request)
             self.rows, self.lost = response.rows, response.lost
 
-        try:
-            stop()
-        except (KeyboardInterrupt, SystemExit):
-            if done.cancel():  # the request was not sent
-                with self._ending():
-                    stop()
-            raise
+        end_even_if_interrupted(self._name, stop, lambda: done.cancel())  # which succeeds if the request was not sent
 
     def read(self) -> Any:
         """Returns the recording as structured numpy array. The file must be on this host."""

@@ -21,8 +21,8 @@ from .state import State
 class Robot(Commands):
     """The robot of one driver. Every command is a method: `arm.move_j([...], speed=0.5)`, `arm.dashboard.power_on()`.
 
-    `namespace` is that of the driver. `timeout` (s) limits the waits for the driver and its responses. A goal that takes longer than
-    `result_timeout` (s) is canceled.
+    `namespace` is that of the driver. `timeout` (s) limits the waits for the driver, its responses and its samples. A goal that takes
+    longer than `result_timeout` (s) is canceled.
 
     Use it in a `with` statement. At the end, running goals are canceled and the arm is at standstill. In the main thread, SIGTERM and
     SIGHUP end the program like Ctrl-C, unless it has handlers of its own.

@@ -13,7 +13,6 @@ from .connection import Connection, until
 from .conversions import Array, numbers
 from .errors import NoDriver, RobotError
 
-STREAM_TIMEOUT = 2.0  # s without a sample, after which a stream ends with an error
 INCOMPLETE_SAMPLES = 500  # samples of which a topic is missing; the oldest are dropped
 
 
@@ -182,14 +181,12 @@ class State:
         try:
             for topic, kind in topics.items():
                 subscriptions.append(self._connection.subscribe(kind, topic, functools.partial(add, topic)))
-            timeout = self._connection.timeout
             while True:
                 try:
-                    sample = complete.get(timeout=timeout)
+                    sample = complete.get(timeout=self._connection.timeout)
                 except queue.Empty:
                     self._connection.check_open()
                     raise NoDriver(f"no messages on {', '.join(topics)}: {self._reason()}") from None
-                timeout = STREAM_TIMEOUT
                 while newest and sample is not None and not complete.empty():
                     sample = complete.get()
                 if sample is None:

@@ -11,7 +11,7 @@ from ur_ros_rtde_viewer.control.jog import HOLD_RATE
 from ur_ros_rtde_viewer.page import uploads
 from ur_ros_rtde_viewer.page.edits import PAUSE
 from ur_ros_rtde_viewer.page.heartbeat import ANSWER_TIMEOUT, LOSS_TIMEOUT, NO_ANSWER, NO_CONNECTION
-from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
+from ur_ros_rtde_viewer.panels.replay_panel import NO_FILE, ReplayPanel
 
 BROWSER = True
 MEASURES_TIME = True
@@ -43,6 +43,7 @@ def test_a_large_file_is_not_uploaded_where_there_is_stop(tab, viewer):
     until(lambda: "csv" in replay.message.content, "the file")
     until(lambda: "Reading" not in replay.message.content, "the end of reading")
     assert replay.message.content.startswith("small.csv has no columns")
+    assert replay._upload.value is NO_FILE, "its content is kept"
     tab.page.get_by_text("Where there is STOP").wait_for(state="hidden")
 
 
@@ -121,58 +122,99 @@ def test_a_stop_that_is_not_answered_is_reported(remote_tab, proxy, press):
     wait_until_hidden(remote_tab, NO_ANSWER)
 
 
-# As a browser that was busy: all events together.
-TYPE_AND_CLICK = """([texts, events]) => {
-  const input = [...document.querySelectorAll("input")].find(input => input.value === "before")
-  for (const text of texts) {
-    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set.call(input, text)
-    input.dispatchEvent(new Event("input", {bubbles: true}))
+# As a browser that was busy: all events together. An event is a selector and the new text, or the type of an event.
+DISPATCH = """events => {
+  for (const [selector, text, type] of events) {
+    const element = document.querySelector(selector)
+    if (type === "input") {
+      Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set.call(element, text)
+      element.dispatchEvent(new Event(type, {bubbles: true}))
+    } else if (type === "keydown") {
+      element.dispatchEvent(new KeyboardEvent(type, {key: "Escape", code: "Escape", bubbles: true}))
+    } else {
+      element.dispatchEvent(new PointerEvent(type, {bubbles: true, cancelable: true, button: 0}))
+    }
   }
-  for (const [selector, type] of events)
-    document.querySelector(selector).dispatchEvent(new PointerEvent(type, {bubbles: true, cancelable: true, button: 0}))
+}"""
+MARK_INPUTS = """() => {
+  for (const input of document.querySelectorAll("input")) if (input.value.startsWith("before")) input.className += " " + input.value
 }"""
 STOP = "div:has(> .stop-style) + div button"
 
 
+def typed(selector, *texts):
+    return [(selector, text, "input") for text in texts]
+
+
+def clicked(selector):
+    return [(selector, "", "click")]
+
+
 class Form:
-    """A text and a button. Notes the text when the button is clicked."""
+    """Two texts, a checkbox and a button. Notes the values when the button is clicked."""
 
     def __init__(self, gui):
         self.taken = []
-        self._text, self._button = gui.add_text("Value", "before"), gui.add_button("Take")
-        self._button.on_click(lambda _event: self.taken.append(self._text.value))
-        self.button = f'button[id="{self._button._impl.uuid}"]'
+        self._elements = [gui.add_text("First", "before-1"), gui.add_text("Second", "before-2"), gui.add_checkbox("Check", False),
+                          gui.add_button("Take")]
+        *inputs, button = self._elements
+        button.on_click(lambda _event: self.taken.append([element.value for element in inputs]))
+        self.first, self.second = "input.before-1", "input.before-2"
+        self.checkbox, self.button = (f'[id="{element._impl.uuid}"]' for element in self._elements[2:])
 
     def close(self):
-        self._text.remove()
-        self._button.remove()
+        for element in self._elements:
+            element.remove()
 
 
 @pytest.fixture
 def form(tab, viewer):
     with contextlib.closing(Form(viewer.server.gui)) as form:
         tab.page.wait_for_selector(form.button)
+        tab.page.evaluate(MARK_INPUTS)
         yield form
 
 
 def test_an_edit_arrives_before_the_click_that_follows_it(tab, form):
-    tab.page.evaluate(TYPE_AND_CLICK, [["1", "1.57"], 2 * [(form.button, "click")]])
+    tab.page.evaluate(DISPATCH, typed(form.first, "1", "1.57") + 2 * clicked(form.button))
     until(lambda: form.taken, "the click")
     tab.button("Take").click()
     until(lambda: len(form.taken) > 1, "the second click")
     tab.page.wait_for_timeout(3e3 * PAUSE)
-    assert form.taken == 2 * ["1.57"]
+    assert form.taken == 2 * [["1.57", "before-2", False]]
 
 
-@pytest.mark.parametrize("event", ["click", "pointerdown"])
+def test_edits_that_follow_each_other_at_once_all_arrive(tab, form):
+    tab.page.evaluate(DISPATCH, typed(form.first, "1", "1.57") + typed(form.second, "2", "2.5") + clicked(form.checkbox)
+                      + typed(form.first, "1.5", "1.58") + clicked(form.button))
+    until(lambda: form.taken, "the click")
+    assert form.taken == [["1.58", "2.5", True]]
+
+
+def test_keys_that_follow_each_other_at_once_all_arrive(tab, form):
+    tab.page.locator(form.first).select_text()
+    for text in ("1.57", "2.5"):
+        tab.page.keyboard.type(text)
+        tab.page.keyboard.press("Tab")
+    tab.page.keyboard.press("Space")
+    tab.button("Take").click()
+    until(lambda: form.taken, "the click")
+    assert form.taken == [["1.57", "2.5", True]]
+
+
+@pytest.mark.parametrize("event", [(STOP, "", "click"), (STOP, "", "pointerdown"), ("body", "", "keydown")],
+                         ids=["click", "pointerdown", "key"])
 def test_stop_does_not_wait_for_edits_and_drops_the_clicks_that_do(tab, form, viewer, monkeypatch, event):
     stopped = threading.Event()
     monkeypatch.setattr(viewer.viewer.control, "stop", stopped.set)
-    tab.page.evaluate(TYPE_AND_CLICK, [["1"], [(form.button, "click"), (STOP, event)]])
+    tab.page.evaluate(DISPATCH, typed(form.first, "1", "2") + typed(form.second, "3") + clicked(form.button) + [event])
     assert stopped.wait(LIMIT)
     tab.page.wait_for_timeout(3e3 * PAUSE)
     tab.page.dispatch_event(STOP, "pointerup")
     assert not form.taken
+    tab.button("Take").click()
+    until(lambda: form.taken, "the click after STOP")
+    assert form.taken == [["2", "3", False]]
 
 
 def test_the_browser_sends_as_many_messages_of_a_held_button_as_it_is_asked_for(tab, viewer, monkeypatch):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from ur_ros_rtde_viewer.panels.banner import AMBER, RED, banners
 from ur_ros_rtde_viewer.panels.plots_panel import DURATION, PLOTS, SAMPLE_PERIOD, PlotsPanel
-from ur_ros_rtde_viewer.panels.replay_panel import ReplayPanel
+from ur_ros_rtde_viewer.panels.replay_panel import NO_FILE, ReplayPanel
 from ur_ros_rtde_viewer.panels.state_panel import StatePanel, arm_rows, roll_pitch_yaw, signal_rows, state_rows
 from ur_ros_rtde_viewer.state.history import History
 from ur_ros_rtde_viewer.state.robot_state import MAX_REJECTIONS, ActiveGoal, DriverStatus, Joints, Pose, Rejection, RobotState, Signals
@@ -160,10 +160,11 @@ def feed(panel, begin, end, period=0.004):
 
 
 def test_plots_keep_the_last_30_s_of_a_day(plots):
-    feed(plots, 86400.0 - 2.0 * DURATION, 86400.0, 0.03)
+    end = 86400.0
+    feed(plots, end - 2.0 * DURATION, end, 0.03)
     time, *values = plots.data
     assert len(values) == 15 and len(time) <= DURATION / SAMPLE_PERIOD + 1
-    assert time[-1] == 0.0 and -DURATION <= time[0] <= -DURATION + 1.0 and values[0][-1] == pytest.approx(86400.0, abs=0.1)
+    assert time[-1] == 0.0 and -DURATION <= time[0] <= -DURATION + 1.0 and values[0][-1] == pytest.approx(end, abs=0.1)
 
 
 def test_plots_begin_again_when_the_clock_does(plots):
@@ -208,7 +209,9 @@ def test_a_recording_that_fails_for_an_unknown_reason_is_reported(replay, caplog
 def test_the_content_of_an_upload_is_not_kept(replay):
     replay._upload._impl.value = UploadedFile("run.csv", b"a,b")
     replay._replay_upload()
-    assert replay._upload.value.content == b""
+    assert replay._upload.value is NO_FILE
+    with pytest.raises(TypeError):  # otherwise, the public setter can be used
+        replay._upload.value = UploadedFile("", b"")
     replay._replay_upload()  # of an upload that arrived together with the first one
     replay.close()
     assert "run.csv has no columns" in replay.message.content

@@ -5,6 +5,7 @@ import base64
 import contextlib
 import os
 import socket
+import subprocess
 import urllib.error
 import urllib.request
 
@@ -12,7 +13,8 @@ import msgspec
 import pytest
 import viser
 import zstandard
-from support import wait_for
+from programs import find_program
+from support import TIMEOUT_FACTOR, wait_for
 from ur_ros_rtde_viewer.arguments import RobotOptions, add_arguments, robots
 from ur_ros_rtde_viewer.errors import ViewerError
 from ur_ros_rtde_viewer.page import origin
@@ -51,6 +53,15 @@ def test_a_tool_with_an_invalid_shape_is_rejected(tmp_path, capfd):
     tool.write_text('<robot name="g"><link name="palm"><visual><geometry><sphere radius="big"/></geometry></visual></link></robot>')
     assert main(["--port", "0", "--model", "ur5e", "--tool", str(tool)]) == 2
     assert "link palm: a visual element has a value" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--port", "0"]], ids=" ".join)
+def test_an_output_that_cannot_be_written_is_reported(arguments):
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run([find_program("ur_ros_rtde_viewer", "view"), *arguments], stdout=full, stderr=subprocess.PIPE, text=True,
+                               timeout=TIMEOUT_FACTOR * 60.0)
+    assert ended.returncode == 1 and "the output cannot be written: No space left on device" in ended.stderr, ended.stderr
+    assert "Traceback" not in ended.stderr and "Exception" not in ended.stderr
 
 
 @pytest.mark.parametrize("arguments, message", [

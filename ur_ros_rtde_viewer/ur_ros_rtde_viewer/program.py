@@ -3,8 +3,10 @@
 import argparse
 import contextlib
 import logging
-import sys
 from typing import List, Optional
+
+from ur_ros_rtde_cli import output
+from ur_ros_rtde_cli.errors import CliError
 
 from .arguments import DESCRIPTION, add_arguments, robots
 from .errors import ViewerError
@@ -63,12 +65,8 @@ def _serve(options: argparse.Namespace) -> None:
 def run(options: argparse.Namespace) -> int:
     logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.INFO)
     logging.getLogger("websockets").setLevel(logging.WARNING)
-    try:
-        _check(options)
-        _serve(options)
-    except ViewerError as error:
-        print(error, file=sys.stderr)
-        return 2
+    _check(options)
+    _serve(options)
     return 0
 
 
@@ -79,4 +77,11 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    return run(parse(arguments))
+    try:
+        with output.written():
+            return run(parse(arguments))
+    except CliError as error:
+        output.print_error(error)
+        return error.exit_status
+    finally:
+        output.drop_unwritable()

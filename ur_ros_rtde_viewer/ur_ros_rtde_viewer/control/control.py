@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List
 
 from ..page import edits, heartbeat, style, uploads
 from ..page.heartbeat import Heartbeat
-from ..page.scripts import script
+from ..page.scripts import STOP_PRESSES, script
 from ..panels.state_panel import StatePanel
 from .control_node import ControlNode, create_steady_timer
 from .form_panel import FormPanel
@@ -60,7 +60,7 @@ class Control:
         """Adds STOP in a window of its own, which stays in view when tabs change or scroll. Notifications of viser are at the top."""
         self._stop_panel = gui.add_panel()
         with self._stop_panel.add_tab("STOP"):
-            gui.add_html(style.STOP + ESCAPE_IN_INPUTS + uploads.LIMIT + edits.CLICKS_AFTER_EDITS)
+            gui.add_html(style.STOP + STOP_PRESSES + ESCAPE_IN_INPUTS + uploads.LIMIT + edits.SPACING)
             button = gui.add_button("STOP", color="red", hint="Decelerates all robots of this page. No substitute for an emergency stop")
             self._stop_text = gui.add_markdown("The key Esc does the same.")
             shown = Heartbeat(gui)

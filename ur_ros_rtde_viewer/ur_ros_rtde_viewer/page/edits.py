@@ -1,41 +1,50 @@
-"""Lets an edit arrive before the click on a button that follows it.
+"""Lets each edit arrive, and before the click on a button that follows it.
 
-viser sends at most one message of a panel in 50 ms: the newest one, of any element. If a busy browser dispatches an edit and a click
-together, the edit is lost, and a goal has other values than the page shows.
+viser sends at most one message of a panel in 50 ms: the newest one, of any element. If a busy browser dispatches two edits, or an edit and
+a click, together, the first one is lost, and a goal has other values than the page shows.
 """
 
 from . import style
 from .scripts import script
 
-PAUSE = 0.1  # s, between an edit and a click
+PAUSE = 0.1  # s, after an edit, in which viser sends it
 
-# Sliders, lists and numbers are also edited by keys and pointers. Clicks that wait are dropped by STOP, which is also in the palette of
-# commands (Spotlight).
-CLICKS_AFTER_EDITS = script("clicksAfterEdits", f"""
-const PAUSE = {1e3 * PAUSE:g}, editors = '[class*=Slider], [aria-haspopup=listbox], [role=option], [class*=NumberInput]';
-const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, [class*=NumberInput], [class*=Spotlight]', waiting = new Set();
-let edited = -Infinity, passing = null;
-const note = event => {{
-  if (event.type === 'input' || event.target.closest?.(editors)) edited = performance.now();
-  if (event.key === 'Escape' || event.target.closest?.('{style.STOP_BUTTON}')) waiting.clear();
+# While an edit may not be sent yet, edits of other texts, of checkboxes and lists, and clicks on buttons wait. Sliders, lists and numbers
+# are also edited by keys and pointers, which do not wait. STOP, which is also in the palette of commands (Spotlight), waits for nothing and
+# drops what waits, except for texts: the page shows them.
+SPACING = script("spaceEdits", f"""
+const texts = 'textarea, input:not([type=file], [type=checkbox])', clickable = 'button, [type=checkbox], [role=option]';
+const editors = '[class*=Slider], [aria-haspopup=listbox], [role=option], [type=checkbox], [class*=NumberInput]';
+const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, button[class*=NumberInput], [class*=Spotlight]';
+let edited = null, timer = null, waiting = [], isPassing = false;
+const edit = element => {{
+  edited = edited && edited !== element ? window : element;  // window: several
+  clearTimeout(timer);
+  timer = setTimeout(passOn, {1e3 * PAUSE:g});
 }};
-for (const type of ['input', 'keydown', 'pointerdown', 'pointerup', 'click']) window.addEventListener(type, note, true);
-const pass = button => {{
-  const rest = edited + PAUSE - performance.now();
-  if (rest > 0) {{
-    setTimeout(pass, rest, button);
-  }} else if (waiting.delete(button)) {{
-    passing = button;
-    button.click();
-    passing = null;
+const passOn = () => {{
+  edited = null;
+  isPassing = true;
+  while (waiting.length && !edited) {{
+    const element = waiting.shift();
+    if (element.matches(clickable)) element.click();
+    else element.dispatchEvent(new Event('input', {{bubbles: true}}));
   }}
+  isPassing = false;
 }};
-window.addEventListener('click', event => {{
-  const button = event.target.closest?.('button');
-  if (!button || button === passing || button.matches(atOnce) || performance.now() - edited >= PAUSE) return;
+const waits = (event, element) => {{
+  if (isPassing || element.matches(atOnce) || !waiting.length && (!edited || edited === element)) return false;
   event.stopImmediatePropagation();
   event.preventDefault();
-  if (!waiting.has(button)) setTimeout(pass, 0, button);
-  waiting.add(button);
-}}, true);
+  if (!waiting.includes(element)) waiting.push(element);
+  return true;
+}};
+const handle = event => {{
+  const find = names => event.target.closest?.(names);
+  const isText = ['input', 'change'].includes(event.type), editor = find(isText ? texts : editors);
+  const target = isText ? editor : event.type === 'click' && find(clickable);
+  if (window.isStopPress(event)) waiting = waiting.filter(element => !element.matches(clickable));
+  if (!(target && waits(event, target)) && editor) edit(editor);
+}};
+for (const type of ['input', 'change', 'keydown', 'pointerdown', 'pointerup', 'click']) window.addEventListener(type, handle, true);
 """)

@@ -6,7 +6,6 @@ hidden element every PERIOD, and the page shows a notice if it does not change, 
 
 from typing import Any
 
-from . import style
 from .scripts import script
 
 PERIOD = 0.5  # s
@@ -21,17 +20,10 @@ NO_ANSWER = f"STOP was not answered within {ANSWER_TIMEOUT:g} s. Use the emergen
 WATCH = script("watchHeartbeat", f"""
 const text = name => document.querySelector(name)?.textContent ?? '';
 let beat = '', silence = 0, answer = '', waiting = null, before = performance.now();
-const press = () => {{
-  if (waiting === null) [answer, waiting] = [text('.stop-answers'), 0];
+const note = event => {{
+  if (waiting === null && window.isStopPress(event)) [answer, waiting] = [text('.stop-answers'), 0];
 }};
-const pressButton = event => {{
-  if (event.button === 0 && event.target.closest?.('{style.STOP_BUTTON}')) press();
-}};
-document.addEventListener('pointerdown', pressButton, true);
-document.addEventListener('click', pressButton, true);
-document.addEventListener('keydown', event => {{
-  if (event.key === 'Escape' && !event.ctrlKey && !event.altKey && !event.shiftKey && !event.metaKey) press();
-}}, true);
+for (const type of ['pointerdown', 'click', 'keydown']) document.addEventListener(type, note, true);
 setInterval(() => {{
   const now = performance.now(), passed = Math.min(now - before, {2e3 * CHECK_PERIOD:g});
   const newBeat = text('.heartbeat'), newAnswer = text('.stop-answers');

@@ -2,6 +2,8 @@
 
 import html
 
+from . import style
+
 
 def script(name: str, code: str) -> str:
     """Returns HTML that runs `code` when it is shown for the first time. `name`: of a variable of the page."""
@@ -31,4 +33,11 @@ window.showNotice = (name, text) => {
   if (notice.textContent !== text) notice.textContent = text;
   notice.style.display = text ? '' : 'none';
 }
+""")
+
+# isStopPress(event) tells whether viser executes STOP for an event. In an input, a copy of Esc is dispatched outside of it.
+STOP_PRESSES = script("hasStopPresses", f"""
+window.isStopPress = event => event.type === 'keydown' ?
+    event.key === 'Escape' && !event.ctrlKey && !event.altKey && !event.shiftKey && !event.metaKey :
+    event.button === 0 && Boolean(event.target.closest?.('{style.STOP_BUTTON}'));
 """)

@@ -39,7 +39,7 @@ class ReplayPanel:
         file = self._upload.value
         if file is NO_FILE:  # two uploads arrived together
             return
-        self._upload._impl.value = NO_FILE  # viser would keep the content
+        self._upload._impl.value = NO_FILE  # viser would keep the content, and its setter of `value` takes no files
         self.replay(file.name, lambda ended: read_csv(file.name, file.content, ended))
 
     def replay(self, name: str, read: Callable[[Callable[[], bool]], Motion]) -> None:
