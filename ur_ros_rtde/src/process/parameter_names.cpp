@@ -10,9 +10,21 @@
 #include <string>
 #include <vector>
 
+#include "plugins/plugin_index.hpp"
 #include "plugins/similar_names.hpp"
 
 namespace ur_ros_rtde {
+namespace {
+
+/// "gripper.input" of an installed plugin `gripper`, which was left out: why, is in the log.
+bool is_of_plugin(const std::string & parameter)
+{
+  return std::ranges::any_of(find_plugins([](const std::string &) {}), [&](const PluginEntry & plugin) {
+    return parameter.starts_with(plugin.name + ".");
+  });
+}
+
+}  // namespace
 
 void check_parameter_names(const Servers & servers)
 {
@@ -28,7 +40,7 @@ void check_parameter_names(const Servers & servers)
     if (std::ranges::find(known, name) != known.end()) {
       continue;  // of another node of this process
     }
-    if (const auto meant = most_similar(name, known)) {
+    if (const auto meant = most_similar(name, known); meant && !is_of_plugin(name)) {
       throw rcl_cxx::ParameterError(name,
                                     fmt::format("there is no parameter {}; did you mean {}?", name, *meant));
     }

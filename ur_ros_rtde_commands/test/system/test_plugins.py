@@ -47,6 +47,14 @@ def test_a_broken_library_is_reported_and_other_plugins_are_loaded(addresses, cl
     assert not client.send(MoveJ, "move_j", joint_positions=HOME).accepted  # the server responds
 
 
+def test_a_parameter_of_a_plugin_that_is_left_out_does_not_prevent_the_start(addresses, processes, plugin_prefix):
+    prefix = plugin_prefix("missing", '<library path="nowhere">' + CLASS.format(name="watchdog", type="Watchdog") + "</library>")
+    server = processes(start_node("command_server", addresses[3], "watchdog.frequency:=1.0", "plugins:=[move_j]",
+                                  env=prepend_path("AMENT_PREFIX_PATH", prefix)))
+    server.wait_for_output("parameter watchdog.frequency is set, but no node of this process has it")
+    assert server.wait_for_output("commands:").endswith("commands: move_j")
+
+
 def test_a_missing_library_and_a_malformed_description_are_reported(addresses, processes, plugin_prefix):
     prefix = plugin_prefix("missing", '<library path="nowhere">' + CLASS.format(name="gone", type="Gone") + "</library>")
     (prefix / "share" / "malformed").mkdir()
