@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <geometry_msgs/msg/pose_stamped.hpp>
 #include <limits>
 #include <numbers>
 
@@ -88,6 +89,59 @@ TEST(FrameTreeTest, DoesNotUseATransformThatIsOld)
   EXPECT_TRUE(tree.pose("table", "base", now + std::chrono::hours(1)));
 }
 
+geometry_msgs::msg::TransformStamped at(int milliseconds_of_stamp, geometry_msgs::msg::TransformStamped frame)
+{
+  frame.header.stamp.sec = 100;
+  frame.header.stamp.nanosec = static_cast<std::uint32_t>(milliseconds_of_stamp) * 1000000U;
+  return frame;
+}
+
+/// A camera on the arm has seen a part; then the arm moves on.
+TEST(FrameTreeTest, APartStaysWhereItWasSeen)
+{
+  FrameTree tree;
+  for (int i = 0; i <= 10; ++i) {
+    tree.add(at(50 * i, transform("base", "camera", {0.01 * i, 0.0, 1.0}, 0.1 * i)), now);
+  }
+  tree.add(at(225, transform("camera", "part", {0.0, 0.0, 0.3})), now);
+  expect_near(tree.pose("part", "base", now), {0.045, 0.0, 1.3, 0.0, 0.0, 0.45});
+  tree.add(at(400, transform("camera", "part", {0.0, 0.0, 0.3})), now);
+  expect_near(tree.pose("part", "base", now), {0.08, 0.0, 1.3, 0.0, 0.0, 0.8});
+}
+
+TEST(FrameTreeTest, NeedsACommonTime)
+{
+  FrameTree tree;
+  tree.add(at(500, transform("base", "camera", {0.0, 0.0, 1.0})), now);
+  tree.add(at(400, transform("camera", "part", {0.0, 0.0, 0.3})), now);
+  EXPECT_EQ(
+      tree.pose("part", "base", now).error().message,
+      "TF does not tell where \"camera\" was when the other frames on the way from \"base\" to \"part\" "
+      "were seen last");
+  tree.add(at(600, transform("camera", "part", {0.0, 0.0, 0.3})), now);
+  EXPECT_TRUE(tree.pose("part", "base", now));
+}
+
+TEST(FrameTreeTest, ForgetsAnOlderTransformAndAClockThatWasSetBack)
+{
+  FrameTree tree;
+  tree.add(at(500, transform("base", "part", {0.5, 0.0, 0.0})), now);
+  tree.add(at(600, transform("base", "part", {0.6, 0.0, 0.0})), now);
+  tree.add(at(550, transform("base", "part", {0.55, 0.0, 0.0})), now);  // late
+  expect_near(tree.pose("part", "base", now), {0.6, 0.0, 0.0, 0.0, 0.0, 0.0});
+  tree.add(at(100, transform("base", "part", {0.1, 0.0, 0.0})), now);  // a simulation was started anew
+  expect_near(tree.pose("part", "base", now), {0.1, 0.0, 0.0, 0.0, 0.0, 0.0});
+}
+
+TEST(FrameTreeTest, ForgetsFramesThatAreNoLongerPublished)
+{
+  FrameTree tree = cell();
+  const auto later = now + std::chrono::minutes(2);
+  tree.add(transform("table", "other", {0.0, 0.0, 0.0}), later);
+  EXPECT_EQ(tree.pose("part", "base", later).error().message, "TF has no frame \"part\"");
+  EXPECT_TRUE(tree.pose("other", "base", later));
+}
+
 TEST(FrameTreeTest, EndsInALoop)
 {
   FrameTree tree;
@@ -103,6 +157,7 @@ TEST(FrameTreeTest, IgnoresWhatIsNoTransform)
   no_rotation.transform.rotation.w = 0.0;
   tree.add(no_rotation, now);
   tree.add(transform("table", "part", {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}), now);
+  tree.add(transform("part", "part", {9.0, 0.0, 0.0}), now);
   expect_near(tree.pose("part", "base", now), {2.0, -0.1, 0.02, 0.0, 0.0, 0.0});
 }
 
@@ -125,6 +180,35 @@ TEST(InBaseTest, ChangesEveryPoseOfAGoal)
     EXPECT_EQ(waypoint.pose.position.x, 1.0);
     EXPECT_EQ(waypoint.via.position.x, 1.0);
   }
+}
+
+struct Poses {
+  std::string frame_id;
+  std::vector<geometry_msgs::msg::Pose> waypoints;
+};
+struct ArcPoint {
+  std::string frame_id;
+  geometry_msgs::msg::Pose via;
+};
+struct OwnMeaning {
+  int frame_id = 0;
+  geometry_msgs::msg::Pose pose;
+};
+struct StampedPose {
+  std::string frame_id;
+  geometry_msgs::msg::PoseStamped pose;
+};
+
+TEST(InBaseTest, AppliesToFieldsOfTheseNamesAndTypes)
+{
+  Poses goal{"table", std::vector<geometry_msgs::msg::Pose>(2)};
+  for_each_pose(goal, [](geometry_msgs::msg::Pose & pose) { pose.position.x += 1.0; });
+  EXPECT_EQ(goal.waypoints[1].position.x, 1.0);
+  static_assert(GivenInFrame<Poses> && GivenInFrame<ArcPoint>);
+  static_assert(!GivenInFrame<OwnMeaning> && !GivenInFrame<StampedPose>);
+  StampedPose other;
+  other.frame_id = "table";
+  EXPECT_FALSE(GoalInBase(other).has_frame("base"));
 }
 
 using MoveL = ur_ros_rtde_msgs::action::MoveL::Goal;

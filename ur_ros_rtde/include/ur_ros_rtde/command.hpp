@@ -58,7 +58,7 @@ class Command : public CommandPlugin {
   /// How goals share the robot with the goals of other commands. Asked once.
   virtual CommandTraits traits() const { return {}; }
   /// Checks the fields of the goal, then what depends on the robot. Runs in the thread that serves the
-  /// requests of all commands, and must not wait.
+  /// requests of all commands, and must not wait; with a `frame_id`, in a thread of the goal, beside others.
   virtual void check(const Goal &, Check &) const {}
   /// Executes the goal in a thread of its own.
   virtual Outcome run(const Goal & goal, Run & run) = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -16,13 +17,17 @@ namespace ur_ros_rtde {
 /// a driver whose goals are all in `base` does not receive them.
 class Frames {
  public:
-  /// `base`: the frame of the controller, with the prefix of this arm.
-  Frames(rcl_cxx::Node & node, std::string base);
+  /// How long a goal waits for the discovery of the publishers, and for a frame that is published rarely.
+  static constexpr std::chrono::seconds longest_wait{2};
+
+  /// `base`: the frame of the controller, with the prefix of this arm. `group`: of the callbacks.
+  Frames(rcl_cxx::Node & node, std::string base, rcl_cxx::CallbackGroup::SharedPtr group);
 
   const std::string & base() const { return base_; }
-  /// The pose of `frame` in `base` now: position (m) and rotation vector (rad). Waits until TF has it, at
-  /// most 2 s, unless `stop` is requested. Fails (invalid_goal) with the reason and the remedy.
-  Expected<Vector6> pose(const std::string & frame, const std::stop_token & stop);
+  /// The newest pose of `frame` in `base`: position (m) and rotation vector (rad). Waits until TF has it, at
+  /// most `timeout`, unless `stop` is requested. Fails (invalid_goal) with the reason and the remedy.
+  Expected<Vector6> pose(const std::string & frame, const std::stop_token & stop,
+                         std::chrono::nanoseconds timeout = longest_wait);
 
  private:
   /// Once.
@@ -30,6 +35,7 @@ class Frames {
 
   rcl_cxx::Node & node_;
   const std::string base_;
+  const rcl_cxx::CallbackGroup::SharedPtr group_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   FrameTree tree_;

@@ -18,8 +18,8 @@ class CommandPlugin {
   virtual ~CommandPlugin() = default;
   /// Called first, before the connection to the robot: for what the plugin needs besides its goals, such as
   /// parameters, topics, services and timers of host.node(), or a Supervision. Callbacks run in the thread
-  /// that accepts the goals of all commands and must not wait; stops have a thread of their own. If it
-  /// throws, the plugin is not used.
+  /// of host.callbacks() if that is their group, otherwise in the one that accepts the goals of all commands,
+  /// and must not wait there. Stops have a thread of their own. If it throws, the plugin is not used.
   virtual void on_load(CommandHost &) {}
   /// Called last, after stop_action_server(); not for a plugin that could not be started, which is destroyed.
   virtual void on_unload() {}

@@ -84,7 +84,7 @@ class CommandHost : public PluginHost {
       : PluginHost(node, options.servers_on_demand),
         robot_(robot),
         options_(options),
-        frames_(node, options.tf_prefix + "base")
+        frames_(node, options.tf_prefix + "base", callbacks())
   {
   }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ur_ros_rtde/detail/run_context.hpp"
+#include "ur_ros_rtde/frames.hpp"
 #include "ur_ros_rtde/outcome.hpp"
 #include "ur_ros_rtde/registers.hpp"
 #include "ur_ros_rtde_robot/connection/interfaces.hpp"
@@ -65,9 +66,11 @@ class Run {
   /// of the TCP. If the TCP offset has no rotation, which is common, that is the orientation of the flange,
   /// and [2] is the force along the flange's Z axis.
   Vector6 flange_force() const;
-  /// The pose of a frame of TF in `base` now: position (m) and rotation vector (rad). See Frames::pose();
-  /// also fails for a topic of teleoperation.
-  Expected<Vector6> frame(const std::string & frame_id) const;
+  /// The newest pose of a frame of TF in `base`: position (m) and rotation vector (rad). Waits for it, at
+  /// most `timeout`: stop a motion before, or use 0. Fails (invalid_goal) with the reason; see
+  /// Frames::pose().
+  Expected<Vector6> frame(const std::string & frame_id,
+                          std::chrono::nanoseconds timeout = Frames::longest_wait) const;
   /// What else is known of the robot: its model and limits, the cycle time, the version.
   const Robot & robot() const { return context_.robot; }
 
@@ -117,8 +120,9 @@ class Run {
   [[nodiscard]] std::optional<StopReason> until_standstill(
       std::chrono::nanoseconds timeout = std::chrono::seconds(5));
   /// Stops what this goal has started, by decelerating, and waits for standstill. Modes stay on; this goal
-  /// goes on.
-  [[nodiscard]] Outcome stop_motion(StopOptions options = {});
+  /// goes on. Without options: those of Command::stop_options(). With Resource::mode, it does nothing while
+  /// another goal moves the arm.
+  [[nodiscard]] Outcome stop_motion(std::optional<StopOptions> options = std::nullopt);
 
   // Other commands, scripts and extensions
 

@@ -10,14 +10,11 @@
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
-namespace {
 
-/// For the discovery of the publishers, and for a frame that is published rarely.
-constexpr std::chrono::seconds longest_wait{2};
-
-}  // namespace
-
-Frames::Frames(rcl_cxx::Node & node, std::string base) : node_(node), base_(std::move(base)) {}
+Frames::Frames(rcl_cxx::Node & node, std::string base, rcl_cxx::CallbackGroup::SharedPtr group)
+    : node_(node), base_(std::move(base)), group_(std::move(group))
+{
+}
 
 void Frames::subscribe()
 {
@@ -27,7 +24,8 @@ void Frames::subscribe()
   }
   const auto subscribe_to = [this](const char * topic, const rcl_cxx::QoS & qos, bool is_static) {
     subscriptions_.push_back(node_.create_subscription<tf2_msgs::msg::TFMessage>(
-        topic, qos, [this, is_static](const tf2_msgs::msg::TFMessage & message) {
+        topic, qos,
+        [this, is_static](const tf2_msgs::msg::TFMessage & message) {
           const auto now = FrameTree::Clock::now();
           {
             const std::lock_guard tree_lock(mutex_);
@@ -36,13 +34,15 @@ void Frames::subscribe()
             }
           }
           changed_.notify_all();
-        }));
+        },
+        group_));
   };
   subscribe_to("/tf", rcl_cxx::QoS::reliable(100), false);
   subscribe_to("/tf_static", rcl_cxx::QoS::transient_local(100), true);
 }
 
-Expected<Vector6> Frames::pose(const std::string & frame, const std::stop_token & stop)
+Expected<Vector6> Frames::pose(const std::string & frame, const std::stop_token & stop,
+                               std::chrono::nanoseconds timeout)
 {
   if (frame == base_) {
     return Vector6{};
@@ -50,18 +50,20 @@ Expected<Vector6> Frames::pose(const std::string & frame, const std::stop_token 
   subscribe();
   std::unique_lock lock(mutex_);
   auto pose = tree_.pose(frame, base_, FrameTree::Clock::now());
-  changed_.wait_for(lock, stop, longest_wait, [&] {
-    pose = tree_.pose(frame, base_, FrameTree::Clock::now());
-    return pose.has_value();
-  });
+  if (!pose) {
+    changed_.wait_for(lock, stop, timeout, [&] {
+      pose = tree_.pose(frame, base_, FrameTree::Clock::now());
+      return pose.has_value();
+    });
+  }
   if (pose) {
     return pose;
   }
   return failure(
       pose.error().code,
-      fmt::format("{}; waited {} s for it: does its publisher run, and robot_state_publisher for the "
-                  "frames of the arm?",
-                  pose.error().message, longest_wait.count()));
+      fmt::format("{}; waited {:.2g} s for it: does its publisher run, and robot_state_publisher for "
+                  "the frames of the arm?",
+                  pose.error().message, std::chrono::duration<double>(timeout).count()));
 }
 
 geometry_msgs::msg::Pose in_base(const Vector6 & frame, const geometry_msgs::msg::Pose & pose)

@@ -77,6 +77,11 @@ Status Run::may_execute(const CalledCommand & called) const
       return possible;
     }
   }
+  if (wanted.traits.resource != Resource::none) {
+    if (Status current = wanted.executions->are_current(wanted.action); !current) {
+      return current;
+    }
+  }
   return wanted.is_extension ? robot().has_extension(wanted.plugin) : Status();
 }
 

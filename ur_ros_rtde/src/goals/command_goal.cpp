@@ -62,6 +62,20 @@ Error left_moving(const std::string & action)
 }
 }  // namespace
 
+Status Executions::are_current(const std::string & action) const
+{
+  const std::lock_guard lock(mutex_);
+  const bool has_abandoned =
+      std::ranges::any_of(goals_, [](const Goal * goal) { return goal->is_finished(); });
+  return !has_abandoned
+             ? Status()
+             : failure(
+                   ErrorCode::busy,
+                   fmt::format("an earlier goal of {} has been abandoned, and its command has not returned: "
+                               "try again when it has, or restart the driver",
+                               action));
+}
+
 Claim CommandGoal::claim()
 {
   Claim result;
@@ -100,8 +114,8 @@ Status CommandGoal::prepare()
       return available;
     }
   }
-  if (Status free = is_not_hindered(); !free) {
-    return free;
+  if (Status may = may_execute(); !may) {
+    return may;
   }
   const Claim wanted = claim();
   if (wanted.resource == Resource::none || preempts()) {
@@ -118,33 +132,25 @@ Status CommandGoal::prepare()
   if (Status not_overtaken = is_not_overtaken(); !not_overtaken) {
     return not_overtaken;
   }
-  if (Status alone = is_alone(); !alone) {
-    return alone;
-  }
   lease_ = std::move(*lease);
   return {};
 }
 
-Status CommandGoal::is_not_hindered() const
+Status CommandGoal::may_execute() const
 {
-  return command_->may_move_arm() ? command_->host.may_move() : Status();
-}
-
-Status CommandGoal::is_alone() const
-{
-  return *command_->running == 0
+  if (command_->needs_motion()) {
+    if (Status free = command_->host.may_move(); !free) {
+      return free;
+    }
+  }
+  return command_->traits.resource == Resource::none || command_->is_stop()
              ? Status()
-             : failure(
-                   ErrorCode::busy,
-                   fmt::format("an earlier goal of {} has been abandoned, and its command has not returned: "
-                               "try again when it has, or restart the driver",
-                               action()));
+             : command_->executions->are_current(action());
 }
 
-Outcome CommandGoal::run_counted()
+Outcome CommandGoal::run_recorded()
 {
-  ++*command_->running;
-  const std::shared_ptr<void> end(nullptr, [this](void *) { --*command_->running; });
+  const auto execution = command_->executions->begin(*this);
   return run_command(make_context());
 }
 
@@ -156,8 +162,8 @@ Status CommandGoal::is_not_overtaken() const
   if (command_->host.stops() != stops_before_) {
     return tl::unexpected(stopped_by_the_driver());
   }
-  if (Status free = is_not_hindered(); !free) {
-    return free;
+  if (Status may = may_execute(); !may) {
+    return may;  // since the check
   }
   return robot().is_continued(received_);
 }
@@ -170,9 +176,16 @@ Status CommandGoal::check(std::vector<GoalQuery> & queries)
   if (!has_frame(frames.base())) {
     return check_in_base(queries);
   }
-  queries.push_back([this, &frames]() -> Status {
+  const auto holder = [this] {
+    const auto claim = robot().holder(command_->traits.resource);
+    return claim ? claim->id : std::string();
+  };
+  queries.push_back([this, &frames, holder, before = holder()]() -> Status {
     if (Status resolved = resolve(frames, stop_request().token()); !resolved) {
       return resolved;
+    }
+    if (const std::string now = holder(); !now.empty() && now != before && preempts()) {
+      return failure(ErrorCode::preempted, fmt::format("goal {}, which came later, has preempted it", now));
     }
     std::vector<GoalQuery> next;
     Status status = check_in_base(next);
@@ -318,9 +331,6 @@ Status CommandGoal::acquire()
   if (!lease && !preempts_all) {
     return tl::unexpected(lease.error());
   }
-  if (Status alone = preempts_all ? Status() : is_alone(); !alone) {
-    return alone;
-  }
   if (lease) {
     hold(std::move(*lease));
   }
@@ -339,6 +349,10 @@ RunContext CommandGoal::make_context()
     const std::lock_guard lock(lease_mutex_);
     return std::exchange(stop_options_, options);
   };
+  context.stop_options = [this] {
+    const std::lock_guard lock(lease_mutex_);
+    return stop_options_;
+  };
   context.log_warning = [this](const std::string & text) { warn(text); };
   context.publish_feedback = [this](const void * feedback) { handle().publish_feedback(feedback); };
   return context;
@@ -355,7 +369,7 @@ Outcome CommandGoal::execute()
           begin_stop();  // after the first one
         }
       }
-      return run_counted();
+      return run_recorded();
     }
     if (auto why = stop_request().reason()) {
       return *std::move(why);
@@ -377,7 +391,7 @@ Outcome CommandGoal::execute()
     if (command_->traits.preempts_all) {
       command_->host.wait_for_startup_requests();
     }
-    return run_counted();
+    return run_recorded();
   });
   return leave_modes(settle(explain(std::move(outcome), begin)));
 }

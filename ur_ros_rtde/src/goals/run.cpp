@@ -90,10 +90,10 @@ Vector6 Run::flange_force() const
   return tcp_frame_force(state());
 }
 
-Expected<Vector6> Run::frame(const std::string & frame_id) const
+Expected<Vector6> Run::frame(const std::string & frame_id, std::chrono::nanoseconds timeout) const
 {
   return context_.command != nullptr
-             ? context_.command->host.frames().pose(frame_id, context_.stop_request->token())
+             ? context_.command->host.frames().pose(frame_id, context_.stop_request->token(), timeout)
              : failure(ErrorCode::not_supported, "a topic of teleoperation has no frames of TF");
 }
 
@@ -110,16 +110,18 @@ std::optional<StopReason> Run::stop_reason() const
   return std::nullopt;
 }
 
-Outcome Run::stop_motion(StopOptions options)
+Outcome Run::stop_motion(std::optional<StopOptions> options)
 {
   if (context_.lease == nullptr) {
     return Outcome::failure(ErrorCode::exception, "a command without Resource::motion has nothing to stop");
   }
-  if (context_.command != nullptr && context_.command->traits.resource == Resource::mode) {
+  if (context_.command != nullptr && context_.command->traits.resource == Resource::mode &&
+      robot().holder(Resource::motion)) {
     return Outcome::success();  // what moves belongs to another goal
   }
-  options.keep = robot().activities() & outlasting_modes;
-  return stop_except_kept(options);
+  StopOptions chosen = options ? *options : context_.stop_options();
+  chosen.keep = robot().activities() & outlasting_modes;
+  return stop_except_kept(chosen);
 }
 
 Status Run::stop_except_kept(const StopOptions & options)

@@ -216,10 +216,9 @@ bool Run::is_compliant() const
 
 bool Run::motion_ended() const
 {
-  const Motion & last = motion();
-  const MotionProgress progress = robot().motion_progress(last.mark);
+  const MotionProgress progress = robot().motion_progress(motion().mark);
   return progress.finished() || (progress.ended() && is_compliant()) ||
-         (!progress.started && Clock::now() - last.begin > motion_start_timeout);
+         (!progress.started && Clock::now() - call_.begin > motion_start_timeout);
 }
 
 Outcome Run::until_motion_ends(std::chrono::nanoseconds timeout)

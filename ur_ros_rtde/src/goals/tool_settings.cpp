@@ -33,28 +33,35 @@ Sample with_payload(const Sample & sample)
   return sample;
 }
 
-/// The load of a moving arm is not changed: stops what the goal has started, or waits for the stop that has
-/// taken the arm out of its hands.
+/// It moves the arm as it is told with the present payload and TCP.
+void require_no_force_mode(const Robot & robot)
+{
+  if (robot.activities().contains(Activity::force_mode)) {
+    throw RobotError({ErrorCode::busy, "force mode is on: end it, then set it again"});
+  }
+}
+
+/// The load of a moving arm is not changed: stops what the goal has started. If a stop has taken the arm out
+/// of its hands, waits for the end of the stop.
 void require_standstill(Run & run)
 {
+  constexpr std::chrono::seconds limit{5};
+  constexpr std::chrono::milliseconds timeout{100};
   const Robot & robot = run.robot();
-  if (!run.stop_reason() && robot.is_moving()) {
+  if (run.may_brake()) {  // it has the arm
     if (const Outcome stopped = run.stop_motion(); !stopped) {
       throw RobotError(stopped.error());
     }
   }
-  constexpr std::chrono::seconds limit{5};
-  constexpr std::chrono::milliseconds timeout{100};
   const auto deadline = std::chrono::steady_clock::now() + limit;
-  for (Sample sample{}; robot.is_moving() && std::chrono::steady_clock::now() < deadline;) {
+  const auto is_busy = [&] { return robot.is_moving() || robot.is_stopping(); };
+  for (Sample sample{}; is_busy() && std::chrono::steady_clock::now() < deadline;) {
     static_cast<void>(robot.wait_for_next(sample, timeout));
   }
   if (robot.is_moving()) {
     throw RobotError({ErrorCode::busy, "the arm moves: set it again when it is at rest"});
   }
-  if (robot.activities().contains(Activity::force_mode)) {
-    throw RobotError({ErrorCode::busy, "force mode is on: end it, then set it again"});
-  }
+  require_no_force_mode(robot);
 }
 
 }  // namespace
@@ -121,6 +128,7 @@ TemporarySetting::~TemporarySetting()
 
 TemporarySetting temporary_payload(Run & run, double mass, const Vector3 & center_of_gravity)
 {
+  require_no_force_mode(run.robot());
   const Sample before = with_payload(run.state());
   return {run, "the payload", [&] { return set_payload(run, mass, center_of_gravity); },
           [before](ur_rtde::RTDEControlInterface & control) {
@@ -130,6 +138,7 @@ TemporarySetting temporary_payload(Run & run, double mass, const Vector3 & cente
 
 TemporarySetting temporary_tcp(Run & run, const std::vector<double> & offset)
 {
+  require_no_force_mode(run.robot());
   const std::vector<double> before = run.control()->getTCPOffset();
   return {run, "the TCP", [&] { return set_tcp(run, offset); },
           [before](ur_rtde::RTDEControlInterface & control) { return control.setTcp(before); }};

@@ -16,11 +16,16 @@
 namespace ur_ros_rtde {
 namespace {
 
-/// "gripper.input" of an installed plugin `gripper`, which was left out: why, is in the log.
-bool is_of_plugin(const std::string & parameter)
+/// "gripper.input" of an installed plugin `gripper` that has no parameter: it was left out. Why, is in the
+/// log.
+bool is_of_plugin_left_out(const std::string & parameter, const std::vector<std::string> & known)
 {
+  const auto is_of = [](const PluginEntry & plugin, const std::string & name) {
+    return name.starts_with(plugin.name + ".");
+  };
   return std::ranges::any_of(find_plugins([](const std::string &) {}), [&](const PluginEntry & plugin) {
-    return parameter.starts_with(plugin.name + ".");
+    return is_of(plugin, parameter) &&
+           std::ranges::none_of(known, [&](const std::string & name) { return is_of(plugin, name); });
   });
 }
 
@@ -40,7 +45,7 @@ void check_parameter_names(const Servers & servers)
     if (std::ranges::find(known, name) != known.end()) {
       continue;  // of another node of this process
     }
-    if (const auto meant = most_similar(name, known); meant && !is_of_plugin(name)) {
+    if (const auto meant = most_similar(name, known); meant && !is_of_plugin_left_out(name, known)) {
       throw rcl_cxx::ParameterError(name,
                                     fmt::format("there is no parameter {}; did you mean {}?", name, *meant));
     }

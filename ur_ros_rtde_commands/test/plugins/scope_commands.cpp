@@ -63,6 +63,12 @@ class EndsItsScope : public Command<SendScript> {
       const TemporarySetting payload = temporary_payload(run, 2.0, {0.0, 0.0, 0.05});
       return turn(run);
     }
+    if (what == "payload and mode") {
+      const TemporarySetting payload = temporary_payload(run, 2.0, {0.0, 0.0, 0.05});
+      const Mode pressing = start_force_mode(run, {.compliant = {false, false, true, false, false, false}});
+      const auto why = run.sleep_for(30s);
+      return why ? Outcome(*why) : Outcome::success();
+    }
     const StreamOptions options;
     TargetStream stream(run, follow_twists(options), options);
     for (int i = 0; i < 100; ++i) {

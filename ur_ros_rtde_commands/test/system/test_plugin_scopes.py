@@ -21,7 +21,7 @@ def driver(simulator, tmp_path_factory):
     environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
     assert environment, "the test commands have not been built"
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,asks_during_a_motion,checks_again,"
-                        "ends_its_scope,never_looks,watches_a_door]", env=environment)
+                        "ends_its_scope,never_looks,turns_as_mode,watches_a_door]", env=environment)
     yield driver
     driver.stop()
     print(driver.output())
@@ -51,6 +51,17 @@ def test_the_arm_is_at_rest_when_an_object_has_ended_and_the_goal_goes_on(robot,
     goal.wait_until(has_ended, 10.0, "a standstill without a mode and a payload")
     message = goal.succeeded().message
     assert not message, message
+
+
+def test_a_payload_is_put_back_after_a_cancel_in_force_mode(robot, simulator):
+    goal = robot.send(SendScript, "ends_its_scope", script="payload and mode", timeout=0.0)
+    goal.wait_until(lambda: simulator.state()["force_mode"], 10.0, "force mode")
+    assert simulator.state()["payload"]["mass"] == pytest.approx(2.0)
+    goal.cancel()
+    status, result = goal.wait_for_result()
+    assert status == GoalStatus.STATUS_CANCELED and "put back" not in result.message, result.message
+    state = simulator.state()
+    assert not state["force_mode"] and state["payload"]["mass"] == 0.0
 
 
 def turning(robot, time):
@@ -86,6 +97,8 @@ def test_a_supervision_rejects_what_would_move_the_arm_until_its_reason_has_gone
     assert status == GoalStatus.STATUS_ABORTED and (result.error_code, result.message) == (ErrorCode.NOT_READY, "the door is open")
     rejected = move(robot, 0.0)
     assert not rejected.accepted and robot.rejection(rejected).message == "the door is open"
+    beside = robot.send(SpeedJ, "turns_as_mode", joint_velocities=[0.0] * 5 + [0.2], acceleration=1.0)
+    assert not beside.accepted and robot.rejection(beside).message == "the door is open"
     open_door(simulator, False)
     make_ready(robot)
     robot.send(SendScript, "watches_a_door", script="end").succeeded()

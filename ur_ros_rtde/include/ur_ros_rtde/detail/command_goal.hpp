@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -17,6 +17,27 @@
 
 namespace ur_ros_rtde {
 
+/// The goals whose command is being executed. Thread-safe.
+class Executions {
+ public:
+  /// Until the end of the returned object, which is that of the command.
+  std::shared_ptr<void> begin(const Goal & goal)
+  {
+    const std::lock_guard lock(mutex_);
+    goals_.insert(&goal);
+    return {nullptr, [this, &goal](void *) {
+              const std::lock_guard end(mutex_);
+              goals_.erase(&goal);
+            }};
+  }
+  /// Success if none of them was abandoned: its result has been sent, and the command has not returned.
+  Status are_current(const std::string & action) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<const Goal *> goals_;
+};
+
 /// How the goals of a command use the robot. The same for all of its goals.
 struct CommandDescription {
   CommandHost & host;
@@ -24,8 +45,7 @@ struct CommandDescription {
   std::string action;  ///< resolved name: "/left/move_l"
   CommandTraits traits;
   bool is_extension = false;
-  /// Number of goals whose command is being executed, also of those that were abandoned.
-  std::shared_ptr<std::atomic<int>> running = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<Executions> executions = std::make_shared<Executions>();
 
   /// Its goals are served like stops.
   bool is_stop() const { return traits.preempts_all || traits.stops_arm; }
@@ -35,11 +55,6 @@ struct CommandDescription {
   bool needs_motion() const
   {
     return moves_arm(traits.resource) && !traits.allowed_in_any_state && !traits.preempts_all;
-  }
-  /// A goal may move the arm, or let it be moved: not one that only ends a mode.
-  bool may_move_arm() const
-  {
-    return needs_motion() && (traits.resource != Resource::mode || traits.leaves_mode_active);
   }
   bool stops_when_client_lost() const { return host.options().stop_when_client_lost && !is_stop(); }
 };
@@ -83,11 +98,10 @@ class CommandGoal : public Goal {
   /// Since the goal was received, nothing has happened that it must not survive: a stop, or an end of the
   /// program that is not a consequence of its preemption.
   Status is_not_overtaken() const;
-  /// No supervision has a reason against a goal that moves the arm.
-  Status is_not_hindered() const;
-  /// For a goal that holds its resource: no abandoned goal of this command is still being executed.
-  Status is_alone() const;
-  Outcome run_counted();
+  /// No supervision has a reason against a goal that moves the arm, and no abandoned goal of this command is
+  /// still being executed.
+  Status may_execute() const;
+  Outcome run_recorded();
   Status acquire();
   void hold(Lease lease);
   RunContext make_context();

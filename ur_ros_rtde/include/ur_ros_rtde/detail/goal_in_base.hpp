@@ -1,44 +1,62 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <geometry_msgs/msg/pose.hpp>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <type_traits>
 
 #include "ur_ros_rtde/frames.hpp"
 #include "ur_ros_rtde/tcp_target.hpp"
 
 namespace ur_ros_rtde {
 
-/// The poses that a goal's field `frame_id` applies to: its fields `pose`, `via` and `poses`, and `pose` and
-/// `via` of its `waypoints`.
+template <typename T>
+concept IsPose = std::same_as<std::remove_cvref_t<T>, geometry_msgs::msg::Pose>;
+template <typename T>
+concept HasPose = requires(T & message) { requires IsPose<decltype(message.pose)>; };
+template <typename T>
+concept HasVia = requires(T & message) { requires IsPose<decltype(message.via)>; };
+template <typename T>
+concept HasPoses = requires(T & message) { requires IsPose<decltype(message.poses.front())>; };
+template <typename T>
+concept HasWaypoints = requires(T & message) {
+  requires IsPose<decltype(message.waypoints.front())> ||
+               HasPose<std::remove_reference_t<decltype(message.waypoints.front())>>;
+};
+
+/// A goal whose poses are given in the frame of its field `frame_id`.
+template <typename T>
+concept GivenInFrame = requires(T & message) {
+  requires std::same_as<std::remove_cvref_t<decltype(message.frame_id)>, std::string>;
+} && (HasPose<T> || HasVia<T> || HasPoses<T> || HasWaypoints<T>);
+
+/// Calls `change` with the poses that a goal's field `frame_id` applies to: its fields `pose`, `via` and
+/// `poses`, and its `waypoints`, or their fields `pose` and `via`.
 template <typename Message, typename F>
 void for_each_pose(Message & message, const F & change)
 {
-  const auto change_in = [&](auto & part) {
-    if constexpr (requires { part.pose; }) {
+  const auto change_in = [&change]<typename Part>(Part & part) {
+    if constexpr (IsPose<Part>) {
+      change(part);
+    }
+    if constexpr (HasPose<Part>) {
       change(part.pose);
     }
-    if constexpr (requires { part.via; }) {
+    if constexpr (HasVia<Part>) {
       change(part.via);
     }
   };
   change_in(message);
-  if constexpr (requires { message.poses; }) {
+  if constexpr (HasPoses<Message>) {
     std::ranges::for_each(message.poses, change);
   }
-  if constexpr (requires { message.waypoints; }) {
+  if constexpr (HasWaypoints<Message>) {
     std::ranges::for_each(message.waypoints, change_in);
   }
 }
-
-/// A goal whose poses are given in the frame of its field `frame_id`.
-template <typename Message>
-concept GivenInFrame = requires(const Message & message) { message.frame_id; } &&
-                       (requires(const Message & message) { message.pose; } ||
-                        requires(const Message & message) { message.poses; } ||
-                        requires(const Message & message) { message.waypoints; });
 
 /// `pose`, given in a frame whose pose in `base` is `frame` (position in m, rotation vector in rad), in
 /// `base`. An orientation that is not valid is left as it is.
@@ -77,7 +95,7 @@ class GoalInBase {
     resolved_ = message_;
     for_each_pose(*resolved_, [&](geometry_msgs::msg::Pose & pose) { pose = in_base(frame, pose); });
     // An orientation that the goal gives may be the identity in `base`; see tcp_target().
-    if constexpr (requires { resolved_->identity_orientation; }) {
+    if constexpr (HasPose<Message> && requires { resolved_->identity_orientation; }) {
       if (!message_.identity_orientation && has_identity_orientation(message_.pose)) {
         resolved_->pose.orientation = message_.pose.orientation;
       } else {

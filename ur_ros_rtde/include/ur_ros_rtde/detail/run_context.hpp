@@ -30,6 +30,8 @@ struct RunContext {
   std::function<StopOptions(const StopOptions &)> exchange_stop_options = [](const StopOptions & options) {
     return options;
   };
+  /// How the arm is stopped if the goal has to end.
+  std::function<StopOptions()> stop_options = [] { return StopOptions{}; };
   std::function<void(const std::string &)> log_warning = [](const std::string &) {};
   /// Publishes an A::Feedback of the action.
   std::function<void(const void *)> publish_feedback = [](const void *) {};
