@@ -135,6 +135,18 @@ def test_an_interrupted_installation_of_the_wheels_continues_in_the_same_environ
     assert installed == [layout] and venv.is_current(layout)
 
 
+def test_the_viewer_waits_for_a_build_of_others_only_if_its_packages_are_missing(layout, state, monkeypatch):
+    """`./ur view` shows the STOP button."""
+    installed = []
+    monkeypatch.setattr(venv, "_pip_install", lambda _, requirements: installed.append(requirements))
+    build.setup_viewer(layout)
+    assert installed == [layout.viewer_requirements]
+    monkeypatch.setattr(lock.console, "step", pytest.fail)
+    with lock.Lock("build", state):
+        build.setup_viewer(layout)
+    assert len(installed) == 1
+
+
 def test_packages_are_built_again_in_a_new_environment(layout):
     names = list(build.build(build.Options(layout)))
     layout.venv.mkdir(parents=True, exist_ok=True)

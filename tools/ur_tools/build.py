@@ -301,6 +301,8 @@ def setup(layout: Layout) -> None:
 
 def setup_viewer(layout: Layout) -> None:
     """Installs the Python packages of the viewer if they are missing. The build needs none of them."""
+    if venv.has_viewer(layout):
+        return
     with Lock("build"):
         venv.ensure_viewer(layout)
 

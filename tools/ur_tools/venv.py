@@ -170,9 +170,13 @@ def _count(requirements: pathlib.Path) -> int:
     return len({pin.name for pin in pins.read(requirements)})
 
 
+def _has(layout: Layout, stamp: str, requirements: Sequence[pathlib.Path]) -> bool:
+    file = layout.venv / stamp
+    return file.is_file() and file.read_text() == _stamp(layout, requirements)
+
+
 def is_current(layout: Layout) -> bool:
-    stamp_file = layout.venv / STAMP
-    return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout, layout.requirements)
+    return _has(layout, STAMP, layout.requirements)
 
 
 def identity(layout: Layout) -> str:
@@ -202,11 +206,15 @@ def ensure(layout: Layout) -> None:
     console.line(f"    done in {time.monotonic() - start:.0f} s")
 
 
+def has_viewer(layout: Layout) -> bool:
+    """Returns whether the environment has the packages of the viewer."""
+    return _has(layout, VIEWER_STAMP, layout.viewer_requirements)
+
+
 def ensure_viewer(layout: Layout) -> None:
     """Installs the packages of the viewer into the existing environment."""
-    stamp_file, stamp = layout.venv / VIEWER_STAMP, _stamp(layout, layout.viewer_requirements)
-    if stamp_file.is_file() and stamp_file.read_text() == stamp:
+    if has_viewer(layout):
         return
     console.step("Installing the page server of the viewer (10 MB)")
     _pip_install(layout, layout.viewer_requirements)
-    stamp_file.write_text(stamp)
+    (layout.venv / VIEWER_STAMP).write_text(_stamp(layout, layout.viewer_requirements))
