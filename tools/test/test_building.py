@@ -1,6 +1,8 @@
 """./ur build: forecast, progress, locks, and a disk that is full or not writable."""
 
+import contextlib
 import errno
+import fcntl
 import os
 import re
 import subprocess
@@ -8,7 +10,7 @@ import sys
 from collections import namedtuple
 
 import pytest
-from ur_tools import build, build_times, console, demo, disk, lock, main, system_packages, venv
+from ur_tools import build, build_times, console, demo, disk, isolation, lint, lock, main, selection, system_packages, testing, venv
 from ur_tools.layout import Layout
 from ur_tools.packages import with_dependencies
 
@@ -246,9 +248,29 @@ with Lock("build", pathlib.Path({folder!r})):
 """
 
 
+@contextlib.contextmanager
+def holder(folder):
+    """Another process that holds the lock, until it reads a line."""
+    process = subprocess.Popen([sys.executable, "-c", HOLDER.format(path=sys.path, folder=str(folder))], stdin=subprocess.PIPE,
+                               stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == "holding\n"
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def is_locked(folder):
+    with (folder / "build.lock").open() as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
+
+
 def test_a_second_build_waits_and_reports_the_first(tmp_path, monkeypatch):
-    code = HOLDER.format(path=sys.path, folder=str(tmp_path))
-    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     printed = []
 
     def on_message(text):
@@ -258,21 +280,52 @@ def test_a_second_build_waits_and_reports_the_first(tmp_path, monkeypatch):
         first.stdin.flush()
 
     monkeypatch.setattr(lock.console, "step", on_message)
-    assert first.stdout.readline() == "holding\n"
-    with lock.Lock("build", tmp_path):
+    with holder(tmp_path) as first, lock.Lock("build", tmp_path):
         assert first.wait(20.0) == 0
     assert printed == [f"Waiting for `./ur build --tests` (process {first.pid}), which is running in this checkout"]
 
 
 def test_a_lock_is_released_when_its_holder_is_killed(tmp_path, monkeypatch):
-    code = HOLDER.format(path=sys.path, folder=str(tmp_path))
-    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    assert first.stdout.readline() == "holding\n"
-    first.kill()
-    first.wait(20.0)
-    monkeypatch.setattr(lock.console, "step", lambda text: pytest.fail(text))
+    with holder(tmp_path) as first:
+        first.kill()
+        first.wait(20.0)
+        monkeypatch.setattr(lock.console, "step", lambda text: pytest.fail(text))
+        with lock.Lock("build", tmp_path):
+            pass
+
+
+def test_a_lock_that_is_entered_again_is_kept_until_the_outer_block_ends(tmp_path):
     with lock.Lock("build", tmp_path):
-        pass
+        with lock.Lock("build", tmp_path):
+            assert is_locked(tmp_path)
+        assert is_locked(tmp_path)
+    assert not is_locked(tmp_path)
+
+
+@pytest.mark.parametrize("count", ["", ":7"])
+def test_a_test_does_not_wait_for_the_run_that_it_belongs_to(tmp_path, monkeypatch, count):
+    with holder(tmp_path) as run:
+        monkeypatch.setenv(isolation.MARK, f"{run.pid}{count}")
+        with pytest.raises(console.Failure, match=f"A test of `./ur build --tests` .process {run.pid}.* would change the build"):
+            with lock.Lock("build", tmp_path):
+                pass
+
+
+def test_no_build_can_change_the_programs_while_they_are_tested(tmp_path, layout, monkeypatch):
+    locked = {}
+
+    def during(what, result):
+        def run(*_unused):
+            locked[what] = is_locked(tmp_path)
+            return result
+        return run
+
+    monkeypatch.setattr(testing, "Lock", lambda name: lock.Lock(name, tmp_path))
+    monkeypatch.setattr(lint, "checks", lambda _: [])
+    for name, result in (("_build", {}), ("_collect", []), ("_run_all", []), ("_diagnose", {})):
+        monkeypatch.setattr(testing, name, during(name, result))
+    testing._run_selected(testing.Options(layout, changed=True), selection.everything())
+    assert locked == dict.fromkeys(("_build", "_collect", "_run_all", "_diagnose"), True)
 
 
 def test_a_lock_is_acquired_again_if_its_file_was_removed_in_the_meantime(tmp_path, monkeypatch):

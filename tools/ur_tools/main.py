@@ -221,7 +221,7 @@ def command_clean(options: argparse.Namespace) -> int:
                    if path.name.split("-")[0] in ("build", "install", "log", "test")]
     if not STATE.exists():
         return 0
-    with Lock("test"), Lock("build"):
+    with Lock("build"):
         for folder in folders:
             if folder.exists():
                 console.line(f"removing {folder.relative_to(ROOT)}")

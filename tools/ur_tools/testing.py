@@ -194,21 +194,24 @@ def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
 def run(options: Options) -> int:
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's "&" ignores it, and tests would inherit that
-    thorough_until = time.monotonic() + THOROUGH_PERIOD if options.thorough else 0.0
-    chosen = _select(options)
+    return _run_selected(options, _select(options))
+
+
+def _build(options: Options, chosen: selection.Selection) -> Dict[str, Package]:
     if chosen.packages == [] and options.changed:
         building.setup(options.layout)
-        packages: Dict[str, Package] = {}
-    else:
-        packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
+        return {}
+    packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
     if "ur_ros_rtde_viewer" in packages:
         building.setup_viewer(options.layout)
-    return _run_selected(options, chosen, packages, thorough_until)
+    return packages
 
 
-def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[str, Package], thorough_until: float) -> int:
-    start = time.monotonic()
-    with Lock("test"):
+def _run_selected(options: Options, chosen: selection.Selection) -> int:
+    with Lock("build"):  # until the end of the tests: a build would change their programs
+        thorough_until = time.monotonic() + THOROUGH_PERIOD if options.thorough else 0.0
+        packages = _build(options, chosen)
+        start = time.monotonic()
         tests = _collect(options, packages, chosen)
         if options.names and not tests:
             raise console.Failure(f"no test has {' or '.join(options.names)} in its name")
