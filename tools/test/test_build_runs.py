@@ -1,17 +1,23 @@
 """./ur build with a fake colcon: in a path with spaces, interrupted and repeated, failing."""
 
+import shutil
+import subprocess
 import sys
 
 import pytest
 from ur_tools import build, console, downloads, lock, system_packages, venv
-from ur_tools.layout import Layout
+from ur_tools.layout import ROOT, Layout
+from ur_tools.packages import Package
 
+# Like CMake, it keeps the compiler with which it has configured a build folder, and rejects a build folder of other sources.
 COLCON = r"""
-import pathlib, sys, time
+import os, pathlib, sys, time
 arguments = sys.argv[1:]
 value = lambda name: pathlib.Path(arguments[arguments.index(name) + 1])
 log, build, install = value("--log-base"), value("--build-base"), value("--install-base")
 names = arguments[arguments.index("--packages-select") + 1:arguments.index("--build-base")]
+sources = {pathlib.Path(argument).name: argument for argument in arguments if pathlib.Path(argument, "package.xml").is_file()}
+compiler, = (argument[2:].replace("=", ":STRING=", 1) for argument in arguments if argument.startswith("-DUR_COMPILER="))
 with (log / "calls.txt").open("a") as file:
     print(*names, file=file)
 for name in names:
@@ -19,6 +25,11 @@ for name in names:
     folder = log / "latest_build" / name
     folder.mkdir(parents=True, exist_ok=True)
     (build / name).mkdir(parents=True, exist_ok=True)
+    cache, home = build / name / "CMakeCache.txt", "CMAKE_HOME_DIRECTORY:INTERNAL=" + sources[name]
+    if not cache.exists():
+        cache.write_text(f"{home}\n{compiler}\nCMAKE_CXX_COMPILER:FILEPATH={os.environ.get('CXX', 'c++')}\n")
+    if home not in cache.read_text():
+        sys.exit("The source does not match the source used to generate cache.")
     failure = log / "failure.txt"
     if failure.exists() and name == names[2]:
         for file in ("stdout.log", "stdout_stderr.log"):
@@ -154,6 +165,81 @@ def test_packages_are_built_again_in_a_new_environment(layout):
     build.build(build.Options(layout))
     build.build(build.Options(layout))
     assert calls(layout) == [names, names]
+
+
+def compilers(layout, names):
+    caches = [(layout.build / name / "CMakeCache.txt").read_text() for name in names]
+    return {line.partition("=")[2] for cache in caches for line in cache.splitlines() if line.startswith("CMAKE_CXX_COMPILER:")}
+
+
+def test_another_compiler_is_used_also_after_a_failed_build(layout, monkeypatch):
+    """As ./ur doctor advises: CXX=g++-12 ./ur ..."""
+    monkeypatch.delenv("CXX", raising=False)
+    make_third_package_fail(layout, "a.cpp:1: error: oh no")
+    with pytest.raises(console.Failure, match="did not build"):
+        build.build(build.Options(layout))
+    (layout.log / "failure.txt").unlink()
+    monkeypatch.setenv("CXX", "g++-12")
+    names = list(build.build(build.Options(layout)))
+    assert calls(layout)[1] == names and compilers(layout, names) == {"g++-12"}
+    build.build(build.Options(layout))
+    assert len(calls(layout)) == 2
+
+
+def test_a_moved_checkout_builds_again(layout):
+    names = list(build.build(build.Options(layout)))
+    for name in names:
+        (layout.build / name / "CMakeCache.txt").write_text(f"CMAKE_HOME_DIRECTORY:INTERNAL=/before/{name}\n")
+        (layout.build / name / build.STAMP).write_text("of the sources at their old path")
+    build.build(build.Options(layout))
+    assert calls(layout) == [names, names]
+
+
+def test_the_cache_of_cmake_says_what_a_build_folder_is_for(tmp_path, monkeypatch):
+    source, folder = tmp_path / "the package", tmp_path / "build"
+    source.mkdir()
+    (source / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.18)\nproject(a NONE)\n")
+    monkeypatch.setenv("CXX", "ccache  g++-12")
+    assert not build.is_foreign(folder, source)
+    arguments = [argument for argument in build.cmake_arguments(build.Options(Layout("kilted")), False) if "UR_COMPILER" in argument]
+    subprocess.run(["cmake", "-S", str(source), "-B", str(folder), *arguments], check=True, stdout=subprocess.DEVNULL)
+    assert not build.is_foreign(folder, source)
+    assert build.is_foreign(folder, tmp_path / "renamed")
+    monkeypatch.setenv("CXX", "g++-11")
+    assert build.is_foreign(folder, source)
+
+
+@pytest.fixture
+def digest(tmp_path, monkeypatch):
+    """Returns a function that returns what the build of a package depends on; the files outside of the package are copies in tmp_path."""
+    for folder in ("wheels", "tools/cmake"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    monkeypatch.setattr("ur_tools.layout.ROOT", tmp_path)
+    monkeypatch.setattr(build, "ROOT", tmp_path)
+    (tmp_path / "package").mkdir()
+
+    def of(variant):
+        return build.Stamps(build.Options(Layout("kilted", variant)), {"a": Package("a", tmp_path / "package", frozenset())})._states
+
+    return of
+
+
+@pytest.mark.parametrize("variant, file", [("", "wheels/kilted.txt"), ("", "wheels/provider.cmake"),
+                                           ("", "wheels/generators/sitecustomize.py"), ("thread", "tools/cmake/sanitize.cmake")])
+def test_packages_are_built_again_after_a_change_of_a_file_that_all_depend_on(digest, tmp_path, variant, file):
+    before = digest(variant)
+    assert digest(variant) == before
+    with (tmp_path / file).open("a") as changed:
+        changed.write("# changed\n")
+    assert digest(variant) != before
+
+
+@pytest.mark.parametrize("variable", build.COMPILER_VARIABLES)
+def test_packages_are_built_again_with_another_compiler_or_its_options(digest, monkeypatch, variable):
+    monkeypatch.delenv(variable, raising=False)
+    before = digest("")
+    monkeypatch.setenv(variable, "another one")
+    assert digest("") != before
 
 
 def test_a_new_environment_has_another_identity(state, monkeypatch):

@@ -4,6 +4,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from typing import Dict, List, Optional, Set, Tuple
 from . import build_times, console, disk, downloads, system_packages, venv
 from .build_times import BuildTimes, Forecast
 from .environment import build_environment
-from .layout import ROOT, STATE, Layout
+from .layout import ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 from .packages import Package, discover_with_interfaces, state, with_dependencies
 from .processes import end_group
@@ -20,6 +21,8 @@ from .processes import end_group
 STAMP = "ur_stamp.txt"
 MEMORY_PER_JOB = 1.0e9  # bytes, of the largest translation units
 WORKERS = 2  # packages at a time, each with all jobs
+# CMake reads these variables when it configures a build folder for the first time, and keeps the values.
+COMPILER_VARIABLES = ("CC", "CFLAGS", "CXX", "CXXFLAGS", "LDFLAGS")
 _NOT_IN_PATHS = ":;$\\\"'"
 
 
@@ -48,23 +51,48 @@ class Options:
         self.jobs = self.jobs or default_jobs()
 
 
+def _includes(layout: Layout) -> List[pathlib.Path]:
+    """Returns the CMake files that each package includes."""
+    files = [] if layout.is_installed else [layout.provider]
+    return files + ([ROOT / "tools" / "cmake" / "sanitize.cmake"] if layout.variant in SANITIZERS else [])
+
+
+def _common_sources(layout: Layout) -> List[pathlib.Path]:
+    """Returns the files outside of the packages that each build depends on."""
+    generators = [] if layout.is_installed else sorted((layout.provider.parent / "generators").glob("*.py"))
+    return [*layout.requirements, *_includes(layout), *generators]
+
+
+def _compiler() -> str:
+    """Returns which compiler and options the environment selects."""
+    return " ".join(" ".join(f"{name}={os.environ[name]}".split()) for name in COMPILER_VARIABLES if os.environ.get(name))
+
+
 def cmake_arguments(options: Options, tests: bool) -> List[str]:
     layout = options.layout
-    includes = [] if layout.is_installed else [layout.provider]
     build_type = "Release"
     arguments = [] if layout.is_installed else [f"-DROS_WHEELS_PREFIX={layout.venv}"]
     if layout.variant == "debug":
         build_type = "Debug"
     elif layout.variant:
         build_type = "RelWithDebInfo"
-        includes.append(ROOT / "tools" / "cmake" / "sanitize.cmake")
         arguments.append(f"-DUR_SANITIZE={layout.variant}")
     return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}",
             # CMake's default, -O3, compiles more slowly: g++ needs a quarter of its time for what -O2 adds to -O1. The trajectory
             # library benefits from -O3 and sets it itself.
             "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
-            "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, includes)), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", *arguments]
+            "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, _includes(layout))), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", f"-DUR_COMPILER={_compiler()}", *arguments]
+
+
+def is_foreign(folder: pathlib.Path, source: pathlib.Path) -> bool:
+    """Returns whether CMake has configured a build folder for other sources, as before the checkout was moved, or for another compiler.
+    It cannot change either."""
+    try:
+        cache = dict(re.findall(r"^(CMAKE_HOME_DIRECTORY|UR_COMPILER):\w+=(.*)$", (folder / "CMakeCache.txt").read_text(), re.M))
+    except FileNotFoundError:
+        return False
+    return (cache.get("CMAKE_HOME_DIRECTORY"), cache.get("UR_COMPILER", "")) != (str(source), _compiler())
 
 
 class Stamps:
@@ -72,8 +100,8 @@ class Stamps:
 
     def __init__(self, options: Options, packages: Dict[str, Package]):
         self._layout = options.layout
-        options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
-        for file in (*options.layout.requirements, options.layout.provider):
+        options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)).encode())
+        for file in _common_sources(options.layout):
             options_digest.update(file.read_bytes())
         options_digest.update(venv.identity(options.layout).encode())
         self._states: Dict[str, str] = {}
@@ -335,6 +363,9 @@ def build(options: Options) -> Dict[str, Package]:
     with Lock("build"):
         packages = _chosen(options)
         pending, stamps = _pending(options, packages)  # another ./ur may have built them while this one waited
+        for name in pending.outdated:
+            if is_foreign(options.layout.build / name, packages[name].folder):
+                shutil.rmtree(options.layout.build / name)
         if pending:
             console.step(pending.text(options))
         _setup(options.layout, pending)
