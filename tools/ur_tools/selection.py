@@ -8,7 +8,7 @@ import subprocess
 from dataclasses import dataclass, field
 from typing import Callable, Dict, Iterable, List, Optional, Set
 
-from . import console
+from . import console, docs
 from .layout import ROOT
 from .packages import Package
 
@@ -19,7 +19,10 @@ _FUZZ_REPLAY = re.compile(r"\badd_fuzz_replay\((\w+)")
 _CPP = (".cpp", ".hpp", ".h", ".c")
 # A change below these folders affects all packages.
 _ALL_PACKAGES = ("wheels/", "tools/cmake/")
-_NO_TESTS = ("LICENSE", ".")
+_DOCUMENTS = (".md", ".rst", ".cff")
+# Files and folders at the top whose contents only tests and the checks of the sources read.
+_ONLY_READ = (".", "Dockerfile", "LICENSE", "compose.", "mypy", "ruff.toml")
+_BUILDS_SITE = "docs.build("
 # Folders that belong to a module of ur_tools.
 _FOLDERS_OF_MODULES = {"bench/": "bench", "chaos/": "chaos", "demo/": "demo",
                        "compare_recording/": "compare_recording",
@@ -158,7 +161,7 @@ def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
 def _imports(path: pathlib.Path) -> Set[str]:
     """Returns the modules of ur_tools that a Python file imports or runs."""
     text = path.read_text()
-    found = set(re.findall(r"ur_tools\.(\w+)", text))
+    found = set(re.findall(r"""ur_tools(?:\.|" / ")(\w+)""", text))
     if re.search(r"""ROOT / ["']ur["']""", text):
         found.add("main")
     for node in ast.walk(ast.parse(text)):
@@ -186,8 +189,10 @@ class Affected:
         folder = self._folders.get(name.split("/")[0])
         if name.startswith(_ALL_PACKAGES):
             self.everything = True
-        elif name.endswith(".md"):
+        elif name.endswith(_DOCUMENTS):
             self._add_document(name)
+        elif name.startswith("docs/site/"):
+            self._add_mentions(_BUILDS_SITE)
         elif folder:
             self._add_of_package(folder, name)
         elif name.startswith("tools/test/"):
@@ -201,7 +206,9 @@ class Affected:
             self._add_mentions(f'"{name.split("/")[0]}"')
         elif name.startswith("tools/"):
             self._add_mentions(pathlib.PurePath(name).stem)
-        elif not name.startswith(_NO_TESTS) and not name.endswith(".png"):
+        elif name.startswith(_ONLY_READ):
+            self._add_mentions(f'"{name.split("/")[0]}"')
+        elif not name.endswith(".png"):
             self.everything = True
 
     def _dependents(self, name: str) -> Set[str]:
@@ -232,9 +239,10 @@ class Affected:
         if len(path.parts) > 3:  # of a folder that tests read as a whole
             self._add_mentions(f'"{path.parts[-2]}"')
         self._add_mentions(f'ROOT / "{path.name}"' if len(path.parts) == 1 else f'"{path.name}"')
-        if path.parts[0] == "docs":
-            self._add_mentions('glob("docs/')
-            self._add_mentions("docs.build(")
+        is_in_docs = path.parts[0] == "docs"
+        self._add_mentions('glob("docs/' if is_in_docs else f'ROOT.glob("{"*/" * (len(path.parts) - 1)}*{path.suffix}"')
+        if is_in_docs or name in ("README.md", *docs.OTHER_PAGES):
+            self._add_mentions(_BUILDS_SITE)
 
     def _add_module(self, module: str) -> None:
         graph = {path.stem: _imports(path) for path in (self._root / "tools" / "ur_tools").glob("*.py")}
