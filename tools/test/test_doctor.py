@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import build, console, disk, doctor, system_packages, venv
+from ur_tools import build, console, disk, doctor, machine, system_packages, venv
 from ur_tools.layout import ROOT, Layout
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
@@ -84,7 +84,7 @@ def test_a_full_disk_fails(monkeypatch):
 
 
 def test_little_memory_is_reported_with_the_number_of_jobs(monkeypatch):
-    monkeypatch.setattr(doctor.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(1.5e9 / 4096))
+    monkeypatch.setattr(machine, "memory", lambda: 1.5e9)
     found = doctor.memory()
     assert found.state == doctor.NOTE and "builds with 1 job" in found.text
 

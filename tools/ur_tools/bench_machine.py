@@ -9,6 +9,7 @@ import subprocess
 import time
 from typing import Dict, List
 
+from . import machine
 from .layout import ROOT, Layout
 
 # Files that do not affect the driver.
@@ -47,7 +48,7 @@ def _git(*arguments: str) -> str:
 
 
 def describe(layout: Layout) -> Dict[str, object]:
-    return {"cpu": _cpu(), "cores": len(os.sched_getaffinity(0)), "kernel": platform.release(), "governor": _governor(),
+    return {"cpu": _cpu(), "cores": machine.cores(), "kernel": platform.release(), "governor": _governor(),
             "compiler": _compiler(layout), "ros": layout.ros, "build": layout.variant or "release"}
 
 

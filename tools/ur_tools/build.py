@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Set, Tuple
 
-from . import build_times, console, disk, downloads, system_packages, venv
+from . import build_times, console, disk, downloads, machine, system_packages, venv
 from .build_times import BuildTimes, Forecast
 from .environment import build_environment
 from .layout import ROOT, SANITIZERS, STATE, Layout
@@ -36,8 +36,7 @@ def check_path(root: pathlib.Path) -> None:
 
 def default_jobs() -> int:
     """One job per core, limited by memory."""
-    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_PER_JOB)))
+    return max(1, min(machine.cores(), int(machine.memory() / MEMORY_PER_JOB)))
 
 
 @dataclass

@@ -11,7 +11,7 @@ import time
 from dataclasses import dataclass
 from typing import Callable, List, Tuple
 
-from . import build, console, disk, ports, system_packages, venv
+from . import build, console, disk, machine, ports, system_packages, venv
 from .layout import ROOT, STATE, Layout
 
 OK, NOTE, FAILED = "OK", "warning", "fault"  # as in `ur doctor --robot`
@@ -105,8 +105,7 @@ def free_space(layout: Layout) -> Finding:
 
 
 def memory() -> Finding:
-    total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    jobs, cores = build.default_jobs(), len(os.sched_getaffinity(0))
+    total, cores, jobs = machine.memory(), machine.cores(), build.default_jobs()
     text = f"{total / 1e9:.1f} GB, {cores} core{'s' * (cores > 1)}: builds with {jobs} job{'s' * (jobs > 1)}"
     if total < LEAST_MEMORY:
         return Finding("memory", NOTE, text, "The largest files take about 1 GB each: close other programs, or add swap space.")

@@ -2,7 +2,6 @@
 
 import ast
 import json
-import os
 import pathlib
 import re
 import signal
@@ -12,7 +11,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
-from . import boilerplate, browser, console, isolation, lint, selection, summary
+from . import boilerplate, browser, console, isolation, lint, machine, selection, summary
 from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
@@ -129,7 +128,7 @@ def _job(test: Test, times: Times) -> Job:
 
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:
     times = Times(options.layout.durations)
-    schedule = Schedule([_job(test, times) for test in tests], len(os.sched_getaffinity(0)), options.jobs)
+    schedule = Schedule([_job(test, times) for test in tests], machine.cores(), options.jobs)
     results: List[Result] = []
     status = console.Status()
     with ThreadPoolExecutor(schedule.most) as pool:
