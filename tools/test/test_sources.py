@@ -2,6 +2,7 @@ import shutil
 import subprocess
 
 import pytest
+import yaml
 from ur_tools import lint, system_packages
 from ur_tools.layout import ROOT, Layout
 
@@ -22,6 +23,13 @@ def test_the_list_of_system_packages_has_one_name_per_line(tmp_path):
 
 def test_a_package_that_is_not_installed_is_reported_as_missing():
     assert system_packages.missing(["no-such-package-anywhere"]) == ["no-such-package-anywhere"]
+
+
+def test_continuous_integration_runs_all_tests_thoroughly():
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
+    commands = [step["run"].splitlines()[-1] for job in workflow["jobs"].values() for step in job["steps"] if step.get("name") == "Test"]
+    assert commands == [".ci/run --ros installed", ".ci/run --ros ${{ matrix.ros }}"]
+    assert './ur test --thorough "$@"' in (ROOT / ".ci" / "run").read_text()
 
 
 @pytest.fixture

@@ -31,7 +31,7 @@ def ensure_sphinx() -> pathlib.Path:
         return python
     console.step(f"Installing Sphinx ({MEGABYTES} MB)")
     shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run([venv.find_python(), "-m", "venv", str(folder)], check=True)
+    subprocess.run([venv.find_python(venv.NEWEST, "Sphinx needs"), "-m", "venv", str(folder)], check=True)
     pins.install(python, REQUIREMENTS)
     stamp_file.write_text(stamp)
     return python

@@ -73,9 +73,9 @@ def system() -> Finding:
     return Finding("system packages", FAILED, text, "sudo apt-get install -y --no-install-recommends " + " ".join(absent))
 
 
-def python() -> Finding:
+def python(layout: Layout) -> Finding:
     try:
-        return Finding("Python", OK, venv.find_python())
+        return Finding("Python", OK, venv.python_for(layout))
     except console.Failure as failure:
         first, _, rest = str(failure).partition("\n")
         return Finding("Python", FAILED, first, rest)
@@ -177,8 +177,8 @@ def show(finding: Finding) -> None:
 
 
 def run(layout: Layout) -> int:
-    checks: Tuple[Callable[[], Finding], ...] = (checkout, compiler, system, python, lambda: free_space(layout), memory, demo_ports,
-                                                 loopback, jitter)
+    checks: Tuple[Callable[[], Finding], ...] = (checkout, compiler, system, lambda: python(layout), lambda: free_space(layout), memory,
+                                                 demo_ports, loopback, jitter)
     failed = 0
     for check in checks:
         finding = check()
