@@ -46,7 +46,7 @@ def test_the_reference_contains_every_package():
 
 
 def test_the_first_forecast_is_the_reference_for_the_number_of_cores(tmp_path, times):
-    for cores, seconds in ((2, 400.0), (1, 800.0)):
+    for cores, seconds in ((2, 400.0), (1, 800.0), (4, 212.0), (64, 35.75)):  # more cores do not accelerate the configuration
         forecast = build_times.Forecast(build_times.BuildTimes(tmp_path / "times.json", cores), {"messages": True, "driver": True}, False,
                                         Clock())
         assert forecast.remaining() == pytest.approx(seconds)
@@ -132,6 +132,12 @@ def test_the_first_estimate_includes_measured_builds(layout, names, tests, measu
     assert least <= measured <= most, text
 
 
+def test_system_packages_have_a_share_of_the_duration(layout):
+    layout.venv.mkdir(parents=True)
+    text = build.Pending(["g++", "libboost-dev"], False, False, []).text(build.Options(layout, jobs=2))
+    assert text == "Installs 2 system packages, about 1 min"
+
+
 def test_the_estimate_is_one_duration_once_it_was_measured(layout):
     layout.venv.mkdir(parents=True)
     options = build.Options(layout, jobs=2)
@@ -207,6 +213,21 @@ def test_a_first_run_without_disk_space_is_rejected_at_the_start(layout, tmp_pat
     monkeypatch.setattr(system_packages, "ensure", lambda: pytest.fail("set up"))
     with pytest.raises(console.Failure, match="0.1 GB free, 2.5 GB needed"):
         build.build(build.Options(layout))
+
+
+def test_what_was_never_built_needs_space(layout, monkeypatch):
+    monkeypatch.setattr(venv, "is_current", lambda _: True)
+    names = list(build.discover_with_interfaces())
+    needed = []
+    for built in (names[:0], names[:len(names) // 2], names):
+        for name in built:
+            (layout.build / name).mkdir(parents=True, exist_ok=True)
+            (layout.build / name / ".ninja_log").touch()
+        needed.append(build.needed_space(layout, names))
+    assert needed == pytest.approx([1.6e9, 0.95e9, 0.3e9])
+    variant = Layout(layout.ros, "thread")
+    assert build.needed_space(variant, names) == pytest.approx(1.6e9)
+    assert build.needed_space(variant, []) == pytest.approx(0.3e9)
 
 
 def test_free_space_of_a_missing_folder_is_that_of_its_parent(tmp_path):

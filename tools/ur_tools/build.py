@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import time
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 from . import build_times, console, disk, downloads, machine, system_packages, venv
 from .build_times import BuildTimes, Forecast
@@ -253,7 +253,7 @@ def _times(options: Options) -> BuildTimes:
     return BuildTimes(options.layout.build_times, options.jobs)
 
 
-def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:
+def _firsts(layout: Layout, names: Iterable[str]) -> Dict[str, bool]:
     """Returns for each package whether this is its first build."""
     return {name: not (layout.build / name / ".ninja_log").is_file() for name in names}
 
@@ -288,7 +288,7 @@ class Pending:
     def _duration(self, options: Options) -> str:
         times, first = _times(options), _firsts(options.layout, self.outdated)
         estimates = [times.first(name, self.tests) for name in self.outdated]
-        seconds = self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
+        seconds = bool(self.system) * system_packages.SECONDS + self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
         most = seconds + (build_times.SLOW_HOST - 1.0) * sum(estimate for estimate, steps in estimates if not steps)
         again = [name for name, is_first in first.items() if not is_first]
         duration = f"at most {build_times.rounded(most)}" if again else f"about {build_times.span(seconds, most)}"
@@ -300,6 +300,12 @@ class Pending:
         return duration
 
 
+def needed_space(layout: Layout, names: Iterable[str]) -> float:
+    """Returns how many bytes a build of these packages needs: the first one more, also for the virtual environment."""
+    share = sum(_firsts(layout, names).values()) / len(discover_with_interfaces())
+    return disk.LATER + disk.ENVIRONMENT * (not venv.is_current(layout)) + disk.BUILD * share
+
+
 def _pending_setup(layout: Layout) -> Pending:
     return Pending(system_packages.absent(), not venv.is_current(layout), not downloads.is_current(), [])
 
@@ -309,7 +315,7 @@ def _setup(layout: Layout, pending: Pending) -> None:
         check_path(ROOT)
         if layout.is_installed:
             venv.python_of_ros(layout)
-        disk.check(STATE, disk.FIRST_RUN if pending.venv else disk.LATER)
+        disk.check(STATE, needed_space(layout, pending.outdated))
     system_packages.ensure()
     venv.ensure(layout)
     downloads.ensure(layout)

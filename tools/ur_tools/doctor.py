@@ -13,6 +13,7 @@ from typing import Callable, List, Tuple
 
 from . import build, console, disk, machine, ports, system_packages, venv
 from .layout import ROOT, STATE, Layout
+from .packages import discover_with_interfaces
 
 OK, NOTE, FAILED = "OK", "warning", "fault"  # as in `ur doctor --robot`
 DEMO_ADDRESS = "127.0.0.1"
@@ -96,8 +97,7 @@ def checkout() -> Finding:
 
 
 def free_space(layout: Layout) -> Finding:
-    needed = disk.LATER if venv.is_current(layout) else disk.FIRST_RUN
-    free = disk.free(STATE)
+    needed, free = build.needed_space(layout, discover_with_interfaces()), disk.free(STATE)
     text = f"{free / 1e9:.1f} GB free, {needed / 1e9:.1f} GB needed"
     if free < needed:
         return Finding("disk", FAILED, text, f"Free some space on the disk that holds {STATE}.")
