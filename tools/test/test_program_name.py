@@ -77,11 +77,6 @@ def test_an_unknown_command_is_explained():
             assert result.returncode == 2 and f"there is no command {command}" in result.stderr and mentions in result.stderr, result.stderr
 
 
-def test_an_unknown_program_for_the_shell_is_named():
-    result = run_inside("shell", "nosuchprogram")
-    assert result.returncode == 1 and "there is no program nosuchprogram" in result.stderr and "Errno" not in result.stderr
-
-
 # Half a second after the signal, it prints that it has stopped.
 STOPS_LATE = """
 import signal, sys, time
@@ -105,6 +100,12 @@ def in_shell():
                                 text=True, start_new_session=True)
 
     return start
+
+
+def test_an_unknown_program_for_the_shell_is_named(in_shell):
+    process = in_shell("nosuchprogram")
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 1 and "there is no program nosuchprogram" in error and "Errno" not in error
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
