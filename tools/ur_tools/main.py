@@ -25,7 +25,7 @@ Command = Callable[[argparse.Namespace], int]
 DESCRIPTION = """\
 Builds, tests and demonstrates the ROS 2 driver for Universal Robots arms and its simulated controller. ROS 2 need not
 be installed: the first run creates a virtual environment with ROS 2 as wheels and builds everything; later runs build
-only what changed. All files are written to .ur/; `./ur clean` removes them.
+only what changed. What is downloaded and built is in .ur/; `./ur clean --all` removes it.
 """
 
 
