@@ -121,6 +121,23 @@ def test_a_program_of_the_shell_ignores_no_signals(in_shell):
     assert in_shell(*ignored).communicate(timeout=60)[0] == subprocess.run(ignored, capture_output=True, text=True).stdout
 
 
+@pytest.mark.parametrize("command, packages", [("plot", ["ur_ros_rtde_cli"]), ("urdf", ["ur_ros_rtde_cli"]), ("call", None)])
+def test_without_a_build_a_command_builds_what_it_needs(monkeypatch, tmp_path, command, packages):
+    def build(options):
+        assert options.packages == packages
+        program = options.layout.install / "bin" / "ur"
+        program.parent.mkdir(parents=True)
+        program.touch()
+
+    monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    monkeypatch.setattr(main.building, "build", build)
+    monkeypatch.setattr(main, "workspace_environment", lambda _: {})
+    monkeypatch.setattr(main.os, "execve", lambda program, arguments, _: sys.exit(arguments[1]))
+    with pytest.raises(SystemExit) as started:
+        main.main([command])
+    assert started.value.code == command
+
+
 def test_the_shell_keeps_its_build(monkeypatch):
     """In `./ur shell --debug`, commands use the debug build."""
     monkeypatch.setenv("UR_LAYOUT", "jazzy:debug")

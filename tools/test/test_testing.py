@@ -207,9 +207,11 @@ def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch)
 
 def test_unknown_options_of_a_command_are_forwarded_to_its_program():
     current = Layout.of_environment().ros
-    for arguments, ros, debug, forwarded in (("demo --model ur5e --ros kilted", "kilted", False, ["--model", "ur5e"]),
-                                             ("demo --debug --speed 0.1", current, True, ["--speed", "0.1"]),
-                                             ("demo --help", current, False, ["--help"]),
-                                             ("sim -- --help", current, False, ["--help"])):
+    for arguments, ros, debug, jobs, forwarded in (("demo --model ur5e --ros kilted", "kilted", False, 0, ["--model", "ur5e"]),
+                                                   ("demo --debug --speed 0.1", current, True, 0, ["--speed", "0.1"]),
+                                                   ("demo --speed 0.1 -j4", current, False, 4, ["--speed", "0.1"]),
+                                                   ("demo -j 4 --jog", current, False, 4, ["--jog"]),
+                                                   ("demo --help", current, False, 0, ["--help"]),
+                                                   ("sim -- --help", current, False, 0, ["--help"])):
         options = main._parse(arguments.split())
-        assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded), arguments
+        assert (options.ros, options.debug, options.jobs, main._forwarded(options)) == (ros, debug, jobs, forwarded), arguments

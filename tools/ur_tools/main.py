@@ -7,6 +7,7 @@ import errno
 import importlib
 import os
 import pathlib
+import re
 import shutil
 import signal
 import sys
@@ -41,6 +42,7 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "completion": "print what lets a shell complete command lines: eval \"$(./ur completion bash)\"",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
+OF_ALL_PACKAGES = ("call", "plugins")  # show the actions and plugins of every package; the others need only that of the program
 # To a program, with all options that are not ours.
 FORWARDED = ("demo", "bench", "chaos", "plan", "compare-recording", "sim", "view", "doctor", *CLI)
 
@@ -146,7 +148,8 @@ def command_cli(options: argparse.Namespace) -> int:
     try:
         command = program(layout, "ur_ros_rtde_cli", "ur")
     except FileNotFoundError:
-        command = program(_build(options), "ur_ros_rtde_cli", "ur")
+        packages = None if options.command in OF_ALL_PACKAGES else ["ur_ros_rtde_cli"]
+        command = program(_build(options, packages=packages), "ur_ros_rtde_cli", "ur")
     os.execve(command, [str(command), *arguments], workspace_environment(layout))
 
 
@@ -355,8 +358,8 @@ def _own_options_first(arguments: List[str]) -> List[str]:
             own += arguments[index:index + 2]
             index += 2
             continue
-        (own if argument == "--debug" or argument.startswith(("--ros=", "--sanitize=", "--jobs=")) else rest).append(
-            argument)
+        is_own = argument == "--debug" or re.match(r"--(ros|sanitize|jobs)=|-j\d+$", argument)
+        (own if is_own else rest).append(argument)
         index += 1
     return own + (["--", *rest] if rest else [])
 
