@@ -88,10 +88,12 @@ def is_foreign(folder: pathlib.Path, source: pathlib.Path) -> bool:
     """Returns whether CMake has configured a build folder for other sources, as before the checkout was moved, or for another compiler.
     It cannot change either."""
     try:
-        cache = dict(re.findall(r"^(CMAKE_HOME_DIRECTORY|UR_COMPILER):\w+=(.*)$", (folder / "CMakeCache.txt").read_text(), re.M))
+        text = (folder / "CMakeCache.txt").read_text(errors="replace")
     except FileNotFoundError:
         return False
-    return (cache.get("CMAKE_HOME_DIRECTORY"), cache.get("UR_COMPILER", "")) != (str(source), _compiler())
+    cache = dict(re.findall(r"^(CMAKE_HOME_DIRECTORY|UR_COMPILER):\w+=(.*)$", text, re.M))
+    is_moved = os.path.realpath(cache.get("CMAKE_HOME_DIRECTORY", "")) != os.path.realpath(source)  # links may lead to the same sources
+    return is_moved or cache.get("UR_COMPILER", "") != _compiler()
 
 
 class Stamps:
