@@ -12,7 +12,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
-from . import boilerplate, browser, console, isolation, lint, selection, summary
+from . import browser, console, isolation, lint, selection, summary
 from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
@@ -226,6 +226,4 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
             if 0.0 < thorough_until < time.monotonic():
                 console.line(f"Fuzz replays that started after {THOROUGH_PERIOD / 60.0:.0f} min were short.")
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
-    if not (options.names or options.changed):
-        console.line("\n" + boilerplate.table())
     return summary.report(results, checks, verdicts, time.monotonic() - start)
