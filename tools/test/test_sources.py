@@ -66,8 +66,16 @@ def test_a_test_that_imports_a_name_that_does_not_exist_is_found(layout, tmp_pat
     assert result.text.count("error:") == 1
 
 
-def test_the_sources_are_checked_by_each_program(layout):
+@pytest.mark.parametrize("output, status, ok", [("", 0, True), ("a.cpp:1:2: warning: unused", 0, False), ("", 139, False)])
+def test_clang_tidy_passes_only_without_a_finding_and_without_a_crash(layout, output, status, ok):
+    install_program(layout, "clang-tidy", output, status)
+    source = ROOT / "rcl_cxx" / "src" / "a.cpp"
+    assert lint._check_tidy(str(layout.venv / "bin" / "clang-tidy"), layout.base / "compile_commands.json", source).ok is ok
+
+
+def test_the_sources_are_checked_by_each_program(layout, capsys):
     for name in ("clang-format", "ruff", "mypy"):
         install_program(layout, name, "finding", 1)
     failed = [check.name for check in lint.checks(layout) if not check.ok]
+    assert capsys.readouterr().out == "==> Checking the sources\n"
     assert failed == ["sources: formatting", "sources: ruff", "sources: mypy"]

@@ -96,6 +96,7 @@ def check_paths() -> Check:
 
 
 def checks(layout: Layout) -> List[Check]:
+    console.step("Checking the sources")
     return [check_format(layout), check_ruff(layout), check_mypy(layout), check_paths()]
 
 
@@ -130,11 +131,15 @@ def tidy(layout: Layout) -> List[Check]:
         sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
         for source in sources:
             console.line(f"    {source.relative_to(ROOT)}")
-            result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT,
-                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
-            ok = "warning:" not in result.stdout and "error:" not in result.stdout
-            found.append(Check(f"clang-tidy: {source.relative_to(ROOT)}", ok, result.stdout))
+            found.append(_check_tidy(program, database, source))
     return found
+
+
+def _check_tidy(program: str, database: pathlib.Path, source: pathlib.Path) -> Check:
+    result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, universal_newlines=True)
+    ok = result.returncode == 0 and "warning:" not in result.stdout
+    return Check(f"clang-tidy: {source.relative_to(ROOT)}", ok, result.stdout or console.tail(result.stderr, 10))
 
 
 def run(layout: Layout, with_tidy: bool) -> int:
