@@ -1,8 +1,7 @@
 import shutil
-import subprocess
 
 import pytest
-from ur_tools import lint, system_packages
+from ur_tools import git, lint, system_packages
 from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
@@ -60,7 +59,7 @@ def test_a_test_that_imports_a_name_that_does_not_exist_is_found(layout, tmp_pat
     (tmp_path / "tools" / "library.py").write_text("LIMIT = 1\n")
     (tmp_path / "arm" / "test").mkdir(parents=True)
     (tmp_path / "arm" / "test" / "test_arm.py").write_text("from library import LIMITS\n\nprint(LIMITS)\n")
-    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    git.run("init", "-q", root=tmp_path)
     result = lint.check_mypy(layout)
     assert not result.ok and 'test_arm.py:1: error: Module "library" has no attribute "LIMITS"' in result.text
     assert result.text.count("error:") == 1

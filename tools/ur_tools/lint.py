@@ -7,7 +7,7 @@ import subprocess
 from dataclasses import dataclass
 from typing import List
 
-from . import console
+from . import console, git
 from .build import Options, build, cmake_arguments
 from .environment import build_environment
 from .layout import ROOT, Layout
@@ -24,15 +24,8 @@ class Check:
     text: str = ""
 
 
-def tracked_files() -> List[pathlib.Path]:
-    """Returns the files that git tracks or would add, without deleted ones."""
-    listing = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"], cwd=ROOT, check=True,
-                             stdout=subprocess.PIPE, universal_newlines=True).stdout
-    return [path for path in (ROOT / name for name in sorted(set(listing.split("\0"))) if name) if path.is_file()]
-
-
 def cpp_files() -> List[pathlib.Path]:
-    return [path for path in tracked_files() if path.suffix in CPP]
+    return [path for path in git.files(ROOT) if path.suffix in CPP]
 
 
 def _run_tool(layout: Layout, program: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
@@ -66,7 +59,7 @@ def check_ruff(layout: Layout) -> Check:
 
 def _test_folders() -> List[str]:
     """Returns the folders with tests in Python. Each is checked alone: the names of their modules repeat."""
-    folders = {path.relative_to(ROOT).parent for path in tracked_files() if path.match("test_*.py")}
+    folders = {path.relative_to(ROOT).parent for path in git.files(ROOT) if path.match("test_*.py")}
     return sorted(str(folder) for folder in folders if "test" in folder.parts)
 
 
@@ -82,7 +75,7 @@ def check_mypy(layout: Layout) -> Check:
 
 def check_paths() -> Check:
     found = []
-    for path in tracked_files():
+    for path in git.files(ROOT):
         if path == pathlib.Path(__file__) or path.suffix in (".png", ".patch"):
             continue
         try:

@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import signal
+import subprocess
 import sys
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 from xml.etree import ElementTree
@@ -382,6 +383,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return options.function(options)
     except console.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
+        return 1
+    except subprocess.CalledProcessError as error:
+        print(f"\n{' '.join(map(str, error.cmd))} failed with status {error.returncode}", file=sys.stderr)
         return 1
     except BrokenPipeError:  # `./ur doctor | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
