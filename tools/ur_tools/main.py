@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 
 from . import build as building
 from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulation, testing, viewer
-from .environment import program, run_environment, workspace_environment
+from .environment import program, run_environment, shell_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 from .processes import ignore, interrupt_on_termination
@@ -89,7 +89,7 @@ def command_sim(options: argparse.Namespace) -> int:
 
 def command_shell(options: argparse.Namespace) -> int:
     layout = _build(options)
-    env = workspace_environment(layout)
+    env = shell_environment(layout)
     command = _forwarded(options)
     if command:
         if shutil.which(command[0], path=env.get("PATH")) is None:
