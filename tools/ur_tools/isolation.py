@@ -4,40 +4,14 @@ import os
 import pathlib
 import shutil
 import signal
-import socket
-from typing import Dict, Optional, Set
+from typing import Set
 
-from .console import Failure
+from .layout import load
 
 MARK = "UR_TEST_RUN"  # environment variable of every process that a test run starts
-FIRST_PORT, LAST_DOMAIN = 32768, 100  # of domain_coordinator
+ros_domain = load("rcl_cxx/test/support/ros_domain.py")
+Domain = ros_domain.Domain
 _SHARED_MEMORY = pathlib.Path("/dev/shm")
-
-
-class Domain:
-    """Reserves a ROS domain and a loopback address on this machine, as ROS's domain_coordinator does: its owner has bound a port."""
-
-    def __init__(self) -> None:
-        self.number = 0
-        self._reservation: Optional[socket.socket] = None
-
-    def __enter__(self) -> "Domain":
-        for self.number in range(1, LAST_DOMAIN + 1):
-            self._reservation = socket.socket()
-            try:
-                self._reservation.bind(("", FIRST_PORT + self.number))
-                return self
-            except OSError:
-                self._reservation.close()
-        raise Failure(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
-
-    def __exit__(self, *_unused: object) -> None:
-        if self._reservation:
-            self._reservation.close()
-
-    def environment(self) -> Dict[str, str]:
-        return {"ROS_DOMAIN_ID": str(self.number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-                "UR_TEST_ADDRESS": f"127.0.1.{self.number}"}
 
 
 def fresh_folder(folder: pathlib.Path) -> pathlib.Path:

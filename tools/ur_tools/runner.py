@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Set
 
 from . import isolation
-from .environment import run_environment
+from .environment import fastdds_profile, run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
 from .stall_watch import REPEATS, StallWatch, failure
@@ -164,8 +164,7 @@ class Runner:
 
         Tests that start before `thorough_until`, on the monotonic clock, are thorough."""
         self._folder, self._limit, self._thorough_until = folder, limit, thorough_until
-        self._env = run_environment(layout)
-        self._env.update(_sanitizer_environment())
+        self._env = {**run_environment(layout), **fastdds_profile(layout), **_sanitizer_environment()}
         self._patience = 1.0
         if layout.variant in SANITIZERS:
             self._patience = SANITIZED_PATIENCE
@@ -216,7 +215,8 @@ class Runner:
         report, log = _report_of(test, base), base.with_suffix(".log")
         if report.exists():
             report.unlink()  # from an earlier run
-        env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+        env = {**self._env, **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+        domain.isolate(env)
         if time.monotonic() < self._thorough_until:
             env["UR_TEST_THOROUGH"] = "1"
         command = test.command + ([f"--junitxml={report}"] if test.is_pytest else [])
