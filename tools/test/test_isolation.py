@@ -1,13 +1,14 @@
-"""What a test starts reaches no nodes of others (rcl_cxx/test/support/ros_domain.py)."""
+"""What a test starts reaches no nodes of others (rcl_cxx/test/support/ros_domain.py) and does not outlive it."""
 
 import contextlib
 import os
+import pathlib
 import socket
 import subprocess
 import sys
 
 import pytest
-from ur_tools import isolation
+from ur_tools import isolation, runner
 from ur_tools.isolation import ros_domain
 from ur_tools.layout import ROOT, Layout
 
@@ -98,9 +99,65 @@ def test_only_a_domain_that_was_reserved_is_kept(given, kept):
     assert (found.stdout.strip() == "5") is kept and found.stdout.strip(), found.stderr
 
 
+# --- Processes and shared memory --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Returns a function that runs a program as a test. The program writes the process id of what it starts to the file `child`."""
+    monkeypatch.setattr(runner, "ROOT", tmp_path)
+
+    def run(code):
+        test = runner.Test("a: test", [sys.executable, "-c", f"import os, pathlib, subprocess, sys\n{code}"], tmp_path, 30.0)
+        with runner.Runner(Layout(Layout.of_environment().ros), tmp_path) as started:
+            return started.run(test)
+
+    return run
+
+
+def start(command, session):
+    return (f"child = subprocess.Popen({command}, start_new_session={session})\n"
+            "pathlib.Path('child').write_text(str(child.pid))\n")
+
+
+def is_running(pid):
+    with contextlib.suppress(OSError):
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    return False
+
+
+@pytest.mark.parametrize("session", [True, False])
+def test_a_test_that_leaves_a_process_fails_and_the_process_ends(run, tmp_path, monkeypatch, session):
+    monkeypatch.setattr(runner, "LEAVING_LIMIT", 0.1)
+    found = run(start(["sleep", "60"], session))
+    assert found.cases.failures == ["left processes behind"] and "left behind: sleep 60\n" in found.output
+    assert not is_running((tmp_path / "child").read_text())
+
+
+def test_a_process_that_ends_by_itself_after_the_test_is_in_order(run, tmp_path):
+    """It sees the end of the test."""
+    child = "import os, time\nwhile os.getppid() == int(os.environ['TEST']): time.sleep(0.01)"
+    found = run("os.environ['TEST'] = str(os.getpid())\n" + start([sys.executable, "-c", child], True))
+    assert found.cases == runner.Cases(1, []), found.output
+    assert not is_running((tmp_path / "child").read_text())
+
+
+def test_a_run_kills_what_a_killed_run_has_left(tmp_path, monkeypatch):
+    monkeypatch.setattr(isolation, "_SHARED_MEMORY", tmp_path)
+    dead = subprocess.Popen(["true"])
+    dead.wait()
+    runs = {"dead": dead.pid, "living": os.getppid()}
+    left = {name: subprocess.Popen(["sleep", "60"], env={isolation.MARK: f"{run}:3"}) for name, run in runs.items()}
+    try:
+        with isolation.CleanUp():
+            assert left["dead"].wait(20.0) < 0 and left["living"].poll() is None
+    finally:
+        left["living"].kill()
+        left["living"].wait()
+
+
 def test_clean_up_removes_only_unused_shared_memory_of_the_run(tmp_path, monkeypatch):
     monkeypatch.setattr(isolation, "_SHARED_MEMORY", tmp_path)
-    monkeypatch.setattr(isolation, "_kill_stray_processes", lambda: None)
     (tmp_path / "fastrtps_old").write_text("")
     with isolation.CleanUp():
         (tmp_path / "fastrtps_orphan").write_text("")
