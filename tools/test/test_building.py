@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import subprocess
 import sys
 from collections import namedtuple
@@ -257,6 +258,22 @@ def test_a_lock_is_released_when_its_holder_is_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(lock.console, "step", lambda text: pytest.fail(text))
     with lock.Lock("build", tmp_path):
         pass
+
+
+def test_a_lock_lasts_as_long_as_a_program_that_inherits_it(tmp_path, monkeypatch):
+    """As colcon, which goes on when ./ur is killed."""
+    code = HOLDER.format(path=sys.path, folder=str(tmp_path)).replace('print("holding"', """
+    import subprocess
+    from ur_tools.lock import held
+    print(subprocess.Popen(["sleep", "60"], stdout=subprocess.DEVNULL, pass_fds=held()).pid""")
+    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    heir = int(first.stdout.readline())
+    first.kill()
+    first.wait(20.0)
+    waited = []
+    monkeypatch.setattr(lock.console, "step", lambda text: waited.append(text) or os.kill(heir, signal.SIGKILL))
+    with lock.Lock("build", tmp_path):
+        assert len(waited) == 1
 
 
 def test_a_lock_is_acquired_again_if_its_file_was_removed_in_the_meantime(tmp_path, monkeypatch):

@@ -5,7 +5,7 @@ import fcntl
 import os
 import pathlib
 import sys
-from typing import IO, Optional
+from typing import IO, Optional, Set
 
 from . import console
 from .layout import STATE
@@ -15,6 +15,14 @@ _NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 def _command() -> str:
     return " ".join(["./ur", *sys.argv[1:]])
+
+
+_held: Set[int] = set()  # descriptors
+
+
+def held() -> Set[int]:
+    """Returns the descriptors of the locks of this process. A program that inherits them keeps the locks until it ends too."""
+    return set(_held)
 
 
 class Lock:
@@ -34,6 +42,7 @@ class Lock:
                     file.write(f"`{_command()}` (process {os.getpid()})")
                     file.flush()
                     self._file = file
+                    _held.add(file.fileno())
             finally:
                 if self._file is None:
                     file.close()
@@ -41,6 +50,7 @@ class Lock:
 
     def __exit__(self, *_unused: object) -> None:
         if self._file:
+            _held.discard(self._file.fileno())
             self._file.close()
             self._file = None
 
