@@ -20,6 +20,7 @@ sources = {pathlib.Path(argument).name: argument for argument in arguments if pa
 compiler, = (argument[2:].replace("=", ":STRING=", 1) for argument in arguments if argument.startswith("-DUR_COMPILER="))
 with (log / "calls.txt").open("a") as file:
     print(*names, file=file)
+(log / "open_files.txt").write_text(" ".join(str(link.resolve()) for link in pathlib.Path("/proc/self/fd").iterdir()))
 for name in names:
     print("Starting >>>", name, flush=True)
     folder = log / "latest_build" / name
@@ -75,6 +76,10 @@ def calls(layout):
     return [line.split() for line in (layout.log / "calls.txt").read_text().splitlines()]
 
 
+def lock_file(layout):
+    return layout.base.parent / "build.lock"
+
+
 def make_third_package_fail(layout, text):
     layout.log.mkdir(parents=True, exist_ok=True)
     (layout.log / "failure.txt").write_text(text)
@@ -85,6 +90,7 @@ def test_builds_everything_once_in_a_path_with_spaces(layout, capsys):
     printed = capsys.readouterr().out
     assert printed.splitlines()[0].startswith(f"==> Builds {len(names)} packages, about ")
     assert all(f"finished {name}" in printed for name in names)
+    assert str(lock_file(layout)) in (layout.log / "open_files.txt").read_text()  # also if ./ur is killed meanwhile
     build.build(build.Options(layout))
     assert calls(layout) == [names]
     assert capsys.readouterr().out == ""

@@ -2,13 +2,11 @@
 
 import errno
 import os
-import re
 from collections import namedtuple
 
 import pytest
-from ur_tools import build, build_times, console, demo, disk, lock, main, system_packages, venv
+from ur_tools import build, build_times, console, disk, lock, main, system_packages, venv
 from ur_tools.layout import Layout
-from ur_tools.packages import with_dependencies
 
 Usage = namedtuple("Usage", "total used free")
 
@@ -39,10 +37,6 @@ def test_durations_are_rounded():
 
 
 # --- Forecast ---------------------------------------------------------------------------------------------------------
-
-
-def test_the_reference_contains_every_package():
-    assert set(build_times.REFERENCE) == set(build.discover_with_interfaces())
 
 
 def test_the_first_forecast_is_the_reference_for_the_number_of_cores(tmp_path, times):
@@ -120,16 +114,6 @@ def test_the_first_run_reports_downloads_packages_and_duration(layout):
     packages = sum(first for first, _ in build_times.REFERENCE.values())
     minutes = build_times.span(venv.SECONDS + packages, venv.SECONDS + build_times.SLOW_HOST * packages)
     assert text == f"First run: downloads about {megabytes} MB, builds {len(names)} packages, about {minutes} on 2 cores"
-
-
-@pytest.mark.parametrize("names, tests, measured", [(demo.packages(demo.parse([])), False, 11), (None, True, 13), (None, True, 24)])
-def test_the_first_estimate_includes_measured_builds(layout, names, tests, measured):
-    """On two cores without a compiler cache, of different hosts."""
-    packages = build.discover_with_interfaces()
-    outdated = list(packages if names is None else with_dependencies(packages, names))
-    text = build.Pending([], True, True, outdated, tests).text(build.Options(layout, jobs=2))
-    least, most = map(int, re.search(r"about (\d+) min to (\d+) min on 2 cores", text).groups())
-    assert least <= measured <= most, text
 
 
 def test_system_packages_have_a_share_of_the_duration(layout):

@@ -3,6 +3,8 @@
 import contextlib
 import errno
 import fcntl
+import os
+import signal
 import subprocess
 import sys
 
@@ -66,6 +68,22 @@ def test_a_lock_is_released_when_its_holder_is_killed(tmp_path, monkeypatch):
         monkeypatch.setattr(lock.console, "step", lambda text: pytest.fail(text))
         with lock.Lock("build", tmp_path):
             pass
+
+
+def test_a_lock_lasts_as_long_as_a_program_that_inherits_it(tmp_path, monkeypatch):
+    """As colcon, which goes on when ./ur is killed."""
+    code = HOLDER.format(path=sys.path, folder=str(tmp_path)).replace('print("holding"', """
+    import subprocess
+    from ur_tools.lock import held
+    print(subprocess.Popen(["sleep", "60"], stdout=subprocess.DEVNULL, pass_fds=held()).pid""")
+    first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    heir = int(first.stdout.readline())
+    first.kill()
+    first.wait(20.0)
+    waited = []
+    monkeypatch.setattr(lock.console, "step", lambda text: waited.append(text) or os.kill(heir, signal.SIGKILL))
+    with lock.Lock("build", tmp_path):
+        assert len(waited) == 1
 
 
 def test_a_lock_that_is_entered_again_is_kept_until_the_outer_block_ends(tmp_path):

@@ -42,6 +42,12 @@ def test_both_show_the_version_without_a_build():
     assert run_outside("--version").stdout == run_inside("--version").stdout == f"ur_ros_rtde {main._version()}\n"
 
 
+def test_the_locale_need_not_be_utf_8():
+    env = {**os.environ, "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    result = subprocess.run([sys.executable, ROOT / "ur", "tést"], env=env, capture_output=True, encoding="utf-8", timeout=300)
+    assert "there is no command tést; did you mean test?" in result.stderr
+
+
 def test_the_help_lists_the_same_commands():
     expected = {*COMMANDS, *CHECKOUT_COMMANDS}
     for result, name in ((run_outside("--help"), "./ur"), (run_inside("--help"), "ur")):

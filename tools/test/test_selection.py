@@ -1,10 +1,9 @@
 """./ur test NAME… and ./ur test --changed: the selection of tests."""
 
 import pathlib
-import subprocess
 
 import pytest
-from ur_tools import console, main, packages, selection, testing
+from ur_tools import console, git, main, packages, selection, testing
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
@@ -60,13 +59,14 @@ def root(tmp_path):
 
 @pytest.fixture
 def repository(root):
-    def git(*arguments):
-        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=root, check=True, capture_output=True)
+    def run(*arguments):
+        result = git.run("-c", "user.name=a", "-c", "user.email=a@b", *arguments, root=root)
+        assert result.returncode == 0, result.stderr
 
-    git("init", "-q", "-b", "main")
-    git("add", "-A")
-    git("commit", "-qm", "first")
-    return root, git
+    run("init", "-q", "-b", "main")
+    run("add", "-A")
+    run("commit", "-qm", "first")
+    return root, run
 
 
 def collected(root):

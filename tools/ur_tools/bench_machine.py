@@ -5,12 +5,11 @@ import pathlib
 import platform
 import re
 import resource
-import subprocess
 import time
 from typing import Dict, List
 
-from . import machine
-from .layout import ROOT, Layout
+from . import git, machine
+from .layout import Layout
 
 # Files that do not affect the driver.
 _NOT_DRIVER = (":!*.md", ":!tools", ":!bench", ":!chaos", ":!demo")
@@ -39,11 +38,7 @@ def _compiler(layout: Layout) -> str:
 
 
 def _git(*arguments: str) -> str:
-    try:
-        result = subprocess.run(["git", *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                universal_newlines=True)
-    except OSError:
-        return ""
+    result = git.run(*arguments)
     return result.stdout.strip() if result.returncode == 0 else ""
 
 

@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from . import build_times, console, disk, downloads, machine, system_packages, venv
+from . import build_times, console, disk, downloads, lock, machine, system_packages, venv
 from .build_times import BuildTimes, Forecast
 from .environment import build_environment
 from .layout import ROOT, SANITIZERS, STATE, Layout
@@ -236,7 +236,8 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
     command = _colcon(options, outdated, [package.folder for package in packages.values()], tests)
     with output.open("w") as file:
         process = subprocess.Popen(command, cwd=layout.base, env=build_environment(layout, options.jobs), stdout=file,
-                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
+                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
+                                   pass_fds=tuple(lock.held()))  # colcon goes on if this process is killed
     times = _times(options)
     progress = Progress(layout, output, stamps, Forecast(times, _firsts(layout, outdated), tests), tests)
     try:

@@ -5,13 +5,14 @@ import fcntl
 import os
 import pathlib
 import sys
-from typing import IO, Optional, Set
+from typing import IO, Dict, Optional, Set
 
 from . import console
 from .isolation import MARK
 from .layout import STATE
 
 _NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
+_held: Dict[pathlib.Path, IO[str]] = {}
 
 
 def _command() -> str:
@@ -26,25 +27,27 @@ def _fail_inside(holder: str) -> None:
                               "edited after the tests started?")
 
 
+def held() -> Set[int]:
+    """Returns the descriptors of the locks of this process. A program that inherits them keeps the locks until it ends too."""
+    return {file.fileno() for file in _held.values()}
+
+
 class Lock:
     """An exclusive lock on a file that names its holder. The kernel releases it when the process ends. A process that holds it can enter
     further blocks with it."""
-
-    _held: Set[pathlib.Path] = set()
 
     def __init__(self, name: str, folder: pathlib.Path = STATE):
         self._path = folder / f"{name}.lock"
         self._file: Optional[IO[str]] = None  # of the outermost block
 
     def __enter__(self) -> "Lock":
-        if self._path not in self._held:
+        if self._path not in _held:
             self._acquire()
-            self._held.add(self._path)
         return self
 
     def __exit__(self, *_unused: object) -> None:
         if self._file:
-            self._held.remove(self._path)
+            del _held[self._path]
             self._file.close()
             self._file = None
 
@@ -57,7 +60,7 @@ class Lock:
                     file.truncate(0)
                     file.write(f"`{_command()}` (process {os.getpid()})")
                     file.flush()
-                    self._file = file
+                    self._file = _held[self._path] = file
             finally:
                 if self._file is None:
                     file.close()

@@ -10,13 +10,14 @@ import pathlib
 import re
 import shutil
 import signal
+import subprocess
 import sys
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
 from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulation, testing, viewer
-from .environment import program, run_environment, workspace_environment
+from .environment import program, run_environment, shell_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 from .processes import ignore, interrupt_on_termination
@@ -90,7 +91,7 @@ def command_sim(options: argparse.Namespace) -> int:
 
 def command_shell(options: argparse.Namespace) -> int:
     layout = _build(options)
-    env = workspace_environment(layout)
+    env = shell_environment(layout)
     command = _forwarded(options)
     if command:
         if shutil.which(command[0], path=env.get("PATH")) is None:
@@ -385,6 +386,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return options.function(options)
     except console.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
+        return 1
+    except subprocess.CalledProcessError as error:
+        print(f"\n{' '.join(map(str, error.cmd))} failed with status {error.returncode}", file=sys.stderr)
         return 1
     except BrokenPipeError:  # `./ur doctor | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

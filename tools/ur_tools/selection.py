@@ -4,11 +4,10 @@ import ast
 import difflib
 import pathlib
 import re
-import subprocess
 from dataclasses import dataclass, field
 from typing import Callable, Dict, Iterable, List, Optional, Set
 
-from . import console, docs
+from . import console, docs, git
 from .layout import ROOT
 from .packages import Package
 
@@ -134,24 +133,20 @@ def _unknown(word: str, known: List[Source], packages: Iterable[str]) -> str:
 # --- By change ------------------------------------------------------------------------------------------------------------
 
 
-def _git(*arguments: str, root: pathlib.Path) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(["git", *arguments], cwd=root, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-
-
 def default_base(root: pathlib.Path = ROOT) -> str:
-    found = _git("rev-parse", "--verify", "--quiet", "origin/main^{commit}", root=root)
+    found = git.run("rev-parse", "--verify", "--quiet", "origin/main^{commit}", root=root)
     return "origin/main" if found.returncode == 0 else "HEAD"
 
 
 def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
     """Returns the files changed since the merge base of HEAD and `base`, including uncommitted and new ones."""
-    common = _git("merge-base", base, "HEAD", root=root)
+    common = git.run("merge-base", base, "HEAD", root=root)
     if common.returncode != 0:
         raise console.Failure(f"--base {base}: git finds no commit that it shares with HEAD. {common.stderr.strip()}".rstrip())
     found: Set[str] = set()
     for arguments in (("diff", "--name-only", "--no-renames", "-z", common.stdout.strip()),
                       ("ls-files", "--others", "--exclude-standard", "-z")):
-        result = _git(*arguments, root=root)
+        result = git.run(*arguments, root=root)
         if result.returncode != 0:
             raise console.Failure(f"git {arguments[0]} failed: {result.stderr.strip()}")
         found.update(name for name in result.stdout.split("\0") if name)
