@@ -54,6 +54,7 @@ class ResourceMonitor:
     EXTRA_DESCRIPTORS = 6
     EXTRA_THREADS = 3
     EXTRA_MEMORY = 12.0  # MB; the memory that the allocator keeps varies
+    LEAST_SAMPLES = 8  # that can be compared
 
     def __init__(self, pid, journal=None, keeps_freed_memory=False):
         """If `keeps_freed_memory` is set, as for a sanitizer, the memory is not compared."""
@@ -68,7 +69,7 @@ class ResourceMonitor:
 
     def find_growth(self):
         """Returns what has grown from the second quarter, after the warm-up, to the last quarter."""
-        if len(self.samples) < 8:
+        if len(self.samples) < self.LEAST_SAMPLES:
             return []
         quarter = len(self.samples) // 4
         # A sample during a reconnection is low, and one during a goal is high: neither may count as growth.
@@ -85,5 +86,8 @@ class ResourceMonitor:
         if not self.samples:
             return "not measured"
         first, last = self.samples[0], self.samples[-1]
-        return ", ".join(f"{name} {a:.0f} to {b:.0f}" for name, a, b in
-                         zip(("descriptors", "threads", "memory (MB)"), first[1:], last[1:]))
+        values = ", ".join(f"{name} {a:.0f} to {b:.0f}" for name, a, b in
+                           zip(("descriptors", "threads", "memory (MB)"), first[1:], last[1:]))
+        if len(self.samples) < self.LEAST_SAMPLES:
+            return f"{values}; the run was too short to compare them"
+        return f"{values}; {'they grew' if self.find_growth() else 'they did not grow'}"

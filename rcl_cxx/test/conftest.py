@@ -3,41 +3,20 @@
 import os
 import pathlib
 import signal
-import socket
 import subprocess
+import sys
 import threading
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "support"))
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from ros_domain import reserve
+
 LIMIT = 10.0
 
-_own_domain = None
-
-
-def _reserve_domain():
-    """Reserves a ROS domain that is unique on this machine until the process exits, as ROS's domain_coordinator does: by binding a port.
-
-    The project's test runner does the same and sets the domain in the environment.
-    """
-    global _own_domain
-    for domain in range(1, 101):
-        _own_domain = socket.socket()
-        try:
-            _own_domain.bind(("", 32768 + domain))
-        except OSError:
-            _own_domain.close()
-            continue
-        return str(domain)
-    raise RuntimeError("all ROS domains are in use by other tests")
-
-
-# Before rclpy is used for the first time.
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-if "ROS_DOMAIN_ID" not in os.environ:
-    os.environ["ROS_DOMAIN_ID"] = _reserve_domain()
-
-import pytest  # noqa: E402
-import rclpy  # noqa: E402
-from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+reserve()  # before rclpy is used for the first time
 
 
 def eventually(condition, limit=LIMIT):

@@ -11,10 +11,10 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-from typing import Dict, List
+from typing import List
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "ur_ros_rtde_commands" / "test" / "system")]
+sys.path.insert(0, str(ROOT / "ur_ros_rtde_commands" / "test" / "system"))
 
 SOURCES = pathlib.Path(__file__).parent / "rclcpp"
 PACKAGES = {"rclcpp_action": "share/rclcpp_action", "ur_ros_rtde": "share/ur_ros_rtde", "ur_simulator": "share/ur_simulator"}
@@ -44,20 +44,16 @@ def build(folder: pathlib.Path) -> pathlib.Path:
 
 def run(checks: pathlib.Path, arguments: List[str], driver_parameters: List[str]) -> int:
     from programs import Simulator, start_node
-    from ur_tools.isolation import Domain
+    from support import own_address  # in a ROS domain of its own
 
-    with Domain() as domain:
-        environment: Dict[str, str] = domain.environment()
-        os.environ.update(environment)
-        address = environment["UR_TEST_ADDRESS"]
-        simulator = Simulator(address)
-        driver = start_node("driver", address, "ur_type:=ur10e", *driver_parameters)
-        try:
-            return subprocess.run([checks, *arguments]).returncode
-        finally:
-            driver.stop()
-            simulator.stop()
-            pathlib.Path(checks.parent, "driver.log").write_text(driver.output() + "\n")
+    simulator = Simulator(own_address())
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", *driver_parameters)
+    try:
+        return subprocess.run([checks, *arguments]).returncode
+    finally:
+        driver.stop()
+        simulator.stop()
+        pathlib.Path(checks.parent, "driver.log").write_text(driver.output() + "\n")
 
 
 def main() -> int:

@@ -5,7 +5,9 @@ import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
-from ur_tools import build, main
+from ur_tools import build, isolation, main
+
+isolation.ros_domain.reserve()
 
 
 @pytest.fixture

@@ -166,7 +166,6 @@ def measured(monkeypatch, *arguments):
     count = iter(range(1, 100))
     monkeypatch.setattr(bench.ports, "check", lambda _address: None)
     monkeypatch.setattr(bench, "_measure_default", lambda *_: ({LATENCY: {"p50": float(next(count))}}, {}))
-    monkeypatch.setattr(bench.boilerplate, "table", lambda: "")
     options = bench.parse([str(argument) for argument in arguments])
     bench.check(options)
     return bench.run(options, Layout.of_environment())

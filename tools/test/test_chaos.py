@@ -96,6 +96,14 @@ def test_resources_that_grow_after_the_warm_up_are_reported():
     assert resources.find_growth() == []
 
 
+def test_a_short_run_makes_no_claim_about_resources():
+    resources = monitor.ResourceMonitor(os.getpid())
+    for samples, text in (([(0.0, 50, 20, 60.0)] * 7, "too short to compare"), ([(0.0, 50, 20, 60.0)] * 8, "did not grow"),
+                          ([(0.0, 50 + 9 * number, 20, 60.0) for number in range(8)], "they grew")):
+        resources.samples = samples
+        assert text in resources.text()
+
+
 def test_memory_is_not_compared_with_a_sanitizer():
     samples = [(0.0, 50, 20, 60.0 + 5.0 * number) for number in range(40)]
     for sanitizer, grown in ((False, ["memory (MB) grew from 135 to 210"]), (True, [])):

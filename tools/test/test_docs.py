@@ -1,12 +1,8 @@
-"""`./ur docs` builds the site without a warning. Its search finds what users look for, and its reference has everything."""
+"""`./ur docs` builds the site without a warning, and its reference has everything."""
 
-import functools
-import json
 import re
-import subprocess
 
 import pytest
-from error_texts import error_texts
 from ur_ros_rtde_launch import launch_arguments
 from ur_ros_rtde_launch.launch_arguments import PARAMETERS
 from ur_tools import console, docs, docs_commands, docs_reference
@@ -22,48 +18,6 @@ def site(tmp_path_factory):
 
 def text_of(page):
     return re.sub(r"<[^>]*>", "", page.read_text())
-
-
-def stems(words):
-    """Returns the stems by which the search of Sphinx finds words. It ignores the others."""
-    code = ("import sys; from sphinx.search.en import SearchEnglish; language = SearchEnglish({}); "
-            "print(*(f'{word} {language.stem(word)}' for word in sys.argv[1:] if word not in language.stopwords), sep=chr(10))")
-    command = [str(docs.ensure_sphinx()), "-c", code, *sorted(word for word in words if len(word) > 2 and not word.isdigit())]
-    lines = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
-    return dict(line.split() for line in lines)
-
-
-def search(site, queries):
-    """Yields the names of the pages with all words of each query, as searchtools.js of Sphinx finds them."""
-    index = json.loads((site / "searchindex.js").read_text().removeprefix("Search.setIndex(").removesuffix(")"))
-    words = {query: set(re.findall(r"\w+", query.lower())) for query in queries}
-    stem_of = stems(set().union(*words.values()))
-
-    @functools.lru_cache(maxsize=None)
-    def pages(stem):
-        found = set()
-        for terms in (index["terms"], index["titleterms"]):
-            for term in [stem] if stem in terms else [term for term in terms if stem in term]:
-                found |= {terms[term]} if isinstance(terms[term], int) else set(terms[term])
-        return found
-
-    for query in queries:
-        numbers = set.intersection(*(pages(stem_of[word]) for word in words[query] if word in stem_of))
-        yield {index["docnames"][number] for number in numbers}
-
-
-@pytest.mark.parametrize("query, page", [
-    ("URCap", "docs/use/parameters"), ("on_busy", "docs/use/parameters"), ("on_busy", "reference/parameters"), ("cite", "index"),
-    ("safeguard", "docs/use/troubleshooting_motions"), ("lookahead_time", "reference/actions_motion"),
-    ("move_until_force NOT_REACHED", "reference/actions_until")])
-def test_the_search_finds(site, query, page):
-    assert page in next(search(site, [query]))
-
-
-def test_the_search_finds_every_text_of_an_error(site):
-    texts = sorted(text for code, found in error_texts().items() if code != "invalid_goal" for text in found)
-    pages = {"docs/use/troubleshooting", "docs/use/troubleshooting_motions"}
-    assert len(texts) > 150 and [text for text, found in zip(texts, search(site, texts)) if not found & pages] == []
 
 
 def test_a_number_of_an_error_is_an_entry_of_the_index(site):

@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools import build, console, disk, doctor, system_packages, venv
-from ur_tools.layout import ROOT, Layout
+from ur_tools import build, console, disk, doctor, machine, system_packages, venv
+from ur_tools.layout import INSTALLED, ROOT, Layout
 
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.201")
 
@@ -73,8 +73,14 @@ def test_missing_system_packages_are_reported(monkeypatch):
 
 def test_a_missing_python_fails_with_the_found_versions(monkeypatch):
     monkeypatch.setattr(venv, "_candidates", lambda: ["/no/such/python"])
-    found = doctor.python()
-    assert found.state == doctor.FAILED and "3.10, 3.11 or 3.12" in found.text and "/no/such/python" in found.advice
+    found = doctor.python(Layout("kilted"))
+    assert found.state == doctor.FAILED and "need Python 3.10 to 3.12" in found.text and "/no/such/python" in found.advice
+
+
+def test_the_python_of_an_installed_ros_may_be_newer_than_the_wheels_support(monkeypatch):
+    monkeypatch.setattr(venv, "_candidates", list)
+    monkeypatch.setattr(venv, "python_of_ros", lambda _: "/usr/bin/python3.14")
+    assert doctor.python(Layout(INSTALLED)) == doctor.Finding("Python", doctor.OK, "/usr/bin/python3.14")
 
 
 def test_a_full_disk_fails(monkeypatch):
@@ -84,7 +90,7 @@ def test_a_full_disk_fails(monkeypatch):
 
 
 def test_little_memory_is_reported_with_the_number_of_jobs(monkeypatch):
-    monkeypatch.setattr(doctor.os, "sysconf", lambda name: 4096 if name == "SC_PAGE_SIZE" else int(1.5e9 / 4096))
+    monkeypatch.setattr(machine, "memory", lambda: 1.5e9)
     found = doctor.memory()
     assert found.state == doctor.NOTE and "builds with 1 job" in found.text
 

@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 import pytest
-from ur_tools.environment import FASTDDS_PROFILES, run_environment, workspace_environment
-from ur_tools.layout import Layout
+from ur_tools.environment import FASTDDS_PROFILES, build_environment, run_environment, shell_environment, workspace_environment
+from ur_tools.layout import INSTALLED, Layout
 
 BACKGROUND = True
 PARTICIPANT = "import rclpy; rclpy.init(); rclpy.create_node('reader_of_profiles'); rclpy.shutdown()"
@@ -52,3 +52,37 @@ def test_keeps_the_profile_of_the_user(layout, monkeypatch):
             user.setenv(variable, "mine.xml")
             env = run_environment(layout)
         assert {name: env.get(name) for name in VARIABLES} == {**dict.fromkeys(VARIABLES), variable: "mine.xml"}
+
+
+@pytest.mark.parametrize("user, localhost_only", [({}, "1"), ({"ROS_LOCALHOST_ONLY": "0"}, "0")])
+def test_on_humble_another_variable_does_so(monkeypatch, user, localhost_only):
+    monkeypatch.delenv("ROS_WHEELS_PREFIX", raising=False)
+    monkeypatch.delenv("ROS_LOCALHOST_ONLY", raising=False)
+    for name, value in {"AMENT_PREFIX_PATH": "/opt/ros/humble", "ROS_DISTRO": "humble", **user}.items():
+        monkeypatch.setenv(name, value)
+    assert run_environment(Layout(INSTALLED))["ROS_LOCALHOST_ONLY"] == localhost_only
+    assert "ROS_LOCALHOST_ONLY" not in run_environment(Layout("jazzy"))
+
+
+def test_variables_that_select_tests_or_a_repository_are_removed(layout, monkeypatch):
+    removed = {"GTEST_FILTER": "None.*", "PYTEST_ADDOPTS": "-k none", "GIT_DIR": "/home/.git", "GIT_INDEX_FILE": "/home/.git/index.lock"}
+    kept = {"GIT_AUTHOR_NAME": "a", "GIT_SSL_CAINFO": "/etc/ca.pem"}
+    for name, value in {**removed, **kept}.items():
+        monkeypatch.setenv(name, value)
+    for env in (build_environment(layout, 1), run_environment(layout)):
+        assert not removed.keys() & env.keys() and kept.items() <= env.items()
+
+
+def test_only_a_shell_writes_and_only_what_has_changed(tmp_path, monkeypatch):
+    """`./ur call stop` has to work on a full disk."""
+    monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    layout = Layout("kilted")
+    assert "COLCON_DEFAULTS_FILE" not in workspace_environment(layout) and not layout.base.exists()
+    layout.base.mkdir()
+    file = pathlib.Path(shell_environment(layout)["COLCON_DEFAULTS_FILE"])
+    os.utime(file, (0, 0))
+    shell_environment(layout)
+    assert file.stat().st_mtime == 0
+    file.write_text("{}")
+    shell_environment(layout)
+    assert "ROS_WHEELS_PREFIX" in file.read_text()

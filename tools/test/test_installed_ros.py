@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from ur_tools import build, console, venv
+from ur_tools import build, console, docs, venv
 from ur_tools.environment import build_environment, run_environment
 from ur_tools.layout import INSTALLED, Layout, sourced
 from ur_tools.packages import discover_with_interfaces
@@ -71,6 +71,20 @@ def test_another_distribution_is_rejected(setup_script):
             venv.python_of_ros(Layout(INSTALLED))
         text = str(failure.value)
         assert found in text and "humble, jazzy, kilted, lyrical, rolling" in text and "--ros jazzy" in text, text
+
+
+def test_its_python_builds_the_site(monkeypatch, tmp_path):
+    """That of Lyrical is newer than those that the wheels exist for."""
+    python = tmp_path / "python3.14"
+    python.write_text(f'#!/bin/sh\n[ "$1" = -c ] && echo "3.14 1" || echo "$@" > "{tmp_path}/created"\n')
+    python.chmod(0o755)
+    monkeypatch.setattr(venv, "_candidates", lambda: [str(python)])
+    monkeypatch.setattr(docs, "FOLDER", tmp_path / "docs")
+    monkeypatch.setattr(docs.pins, "install", lambda *_: (tmp_path / "docs" / "venv").mkdir(parents=True))
+    docs.ensure_sphinx()
+    assert (tmp_path / "created").read_text() == f"-m venv {tmp_path}/docs/venv\n"
+    with pytest.raises(console.Failure, match="The ROS 2 wheels need Python 3.10 to 3.12(.|\n)*is 3.14"):
+        venv.find_python()
 
 
 def test_a_python_without_its_rclpy_is_rejected(setup_script, monkeypatch, tmp_path):

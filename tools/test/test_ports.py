@@ -1,5 +1,6 @@
 """Ports of a simulated controller: whether they are free, and which process uses them."""
 
+import errno
 import os
 import socket
 import subprocess
@@ -56,6 +57,21 @@ def test_a_port_in_use_is_reported_with_its_process_and_another_address(listenin
     assert text.startswith(f"port 30001 (primary) of {ADDRESS}: in use by process {pid}: {sys.executable} -c")
     other = text.rsplit("--address ", 1)[1]
     assert other != ADDRESS and ports.in_use(other, list(ports.PORTS.values())) == []
+
+
+def test_a_program_on_any_port_of_a_controller_is_reported_except_where_privileges_are_needed(listening, monkeypatch):
+    listening(ADDRESS, 30020)
+    with pytest.raises(console.Failure, match="port 30020 .interpreter."):
+        ports.check(ADDRESS)
+
+    class WithoutPrivileges(socket.socket):
+        def bind(self, address):
+            raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(ports.socket, "socket", WithoutPrivileges)
+    assert ports.in_use(ADDRESS, [ports.PORTS["MODBUS"]]) == []  # the simulator starts without it
+    with pytest.raises(console.Failure, match="port 30001 .* cannot be opened"):
+        ports.in_use(ADDRESS, [30001])
 
 
 def test_a_listener_on_all_addresses_occupies_the_port(listening):

@@ -32,6 +32,20 @@ def test_leaving_the_block_stops_all_programs(tmp_path):
     assert not sleeper.running
 
 
+def test_the_logs_of_ros_are_beside_the_output_unless_the_user_has_chosen_a_folder(tmp_path, monkeypatch):
+    """The driver keeps the last 20 stops in the folder of these logs: those of the user's robots must stay."""
+    command = python(f"import os, pathlib; pathlib.Path({str(tmp_path / 'folder')!r}).write_text(os.environ['ROS_LOG_DIR'])")
+    monkeypatch.delenv("ROS_LOG_DIR", raising=False)
+    for folder in (str(tmp_path / "ros"), "/chosen"):
+        with Programs(tmp_path) as programs:
+            assert programs.run(command, os.environ, 30.0) == 0
+            assert (tmp_path / "folder").read_text() == folder
+            (tmp_path / "folder").unlink()
+            assert programs.start("started", command).process.wait(30.0) == 0
+            assert (tmp_path / "folder").read_text() == folder
+        monkeypatch.setenv("ROS_LOG_DIR", "/chosen")
+
+
 def test_an_exception_in_the_block_stops_all_programs(tmp_path):
     with pytest.raises(RuntimeError):
         with Programs(tmp_path) as programs:

@@ -42,6 +42,12 @@ def test_both_show_the_version_without_a_build():
     assert run_outside("--version").stdout == run_inside("--version").stdout == f"ur_ros_rtde {main._version()}\n"
 
 
+def test_the_locale_need_not_be_utf_8():
+    env = {**os.environ, "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    result = subprocess.run([sys.executable, ROOT / "ur", "tést"], env=env, capture_output=True, encoding="utf-8", timeout=300)
+    assert "there is no command tést; did you mean test?" in result.stderr
+
+
 def test_the_help_lists_the_same_commands():
     expected = {*COMMANDS, *CHECKOUT_COMMANDS}
     for result, name in ((run_outside("--help"), "./ur"), (run_inside("--help"), "ur")):
@@ -77,11 +83,6 @@ def test_an_unknown_command_is_explained():
             assert result.returncode == 2 and f"there is no command {command}" in result.stderr and mentions in result.stderr, result.stderr
 
 
-def test_an_unknown_program_for_the_shell_is_named():
-    result = run_inside("shell", "nosuchprogram")
-    assert result.returncode == 1 and "there is no program nosuchprogram" in result.stderr and "Errno" not in result.stderr
-
-
 # Half a second after the signal, it prints that it has stopped.
 STOPS_LATE = """
 import signal, sys, time
@@ -107,6 +108,12 @@ def in_shell():
     return start
 
 
+def test_an_unknown_program_for_the_shell_is_named(in_shell):
+    process = in_shell("nosuchprogram")
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 1 and "there is no program nosuchprogram" in error and "Errno" not in error
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_program_of_the_shell_handles_signals_itself(in_shell, number):
     process = in_shell("python3", "-c", STOPS_LATE)
@@ -118,6 +125,23 @@ def test_a_program_of_the_shell_handles_signals_itself(in_shell, number):
 def test_a_program_of_the_shell_ignores_no_signals(in_shell):
     ignored = ["grep", "SigIgn", "/proc/self/status"]
     assert in_shell(*ignored).communicate(timeout=60)[0] == subprocess.run(ignored, capture_output=True, text=True).stdout
+
+
+@pytest.mark.parametrize("command, packages", [("plot", ["ur_ros_rtde_cli"]), ("urdf", ["ur_ros_rtde_cli"]), ("call", None)])
+def test_without_a_build_a_command_builds_what_it_needs(monkeypatch, tmp_path, command, packages):
+    def build(options):
+        assert options.packages == packages
+        program = options.layout.install / "bin" / "ur"
+        program.parent.mkdir(parents=True)
+        program.touch()
+
+    monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    monkeypatch.setattr(main.building, "build", build)
+    monkeypatch.setattr(main, "workspace_environment", lambda _: {})
+    monkeypatch.setattr(main.os, "execve", lambda program, arguments, _: sys.exit(arguments[1]))
+    with pytest.raises(SystemExit) as started:
+        main.main([command])
+    assert started.value.code == command
 
 
 def test_the_shell_keeps_its_build(monkeypatch):

@@ -1,10 +1,9 @@
 """./ur test NAME… and ./ur test --changed: the selection of tests."""
 
 import pathlib
-import subprocess
 
 import pytest
-from ur_tools import console, main, packages, selection, testing
+from ur_tools import console, git, main, packages, selection, testing
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
@@ -27,10 +26,14 @@ FILES = {
     "driver_cli/test/test_cli.py": "",
     "tools/test/test_console.py": "from ur_tools import console\n",
     "tools/test/test_demo.py": 'import ur_tools.demo\nsys.path.insert(0, ROOT / "driver/test/nodes")\n',
-    "tools/test/test_readme.py": 'README = ROOT / "README.md"\nPAGES = ROOT.glob("docs/*/**/*.md")\n',
+    "tools/test/test_container.py": 'FILES = ROOT / "Dockerfile", ROOT / ".dockerignore", ROOT / ".devcontainer" / "devcontainer.json"\n',
+    "tools/test/test_docs.py": "docs.build(folder)\n",
+    "tools/test/test_readme.py": 'README = ROOT / "README.md"\nPAGES = *ROOT.glob("*.md"), *ROOT.glob("docs/*/**/*.md")\n',
+    "tools/test/test_release.py": 'LICENSE = ROOT / "LICENSE"\nCHANGES = folder / "CHANGELOG.rst"\n',
     "tools/ur_tools/console.py": "",
     "tools/ur_tools/simulation.py": "from . import console\n",
-    "tools/ur_tools/demo.py": "from .simulation import start\n",
+    "tools/ur_tools/demo.py": 'from .simulation import start\nFIGURE = ROOT / "tools" / "ur_tools" / "demo_figure.py"\n',
+    "tools/ur_tools/demo_figure.py": "",
     "tools/ur_tools/main.py": "from . import console\n",
     "tools/cmake/sanitize.cmake": "",
     "docs/use/commands/io.md": "",
@@ -42,6 +45,8 @@ FILES = {
 }
 ALL = {"driver: robot.StopTest.KeepsItsLine": "build/driver/test_stop", "driver: Each/Angles.AreRead/0": "build/driver/test_stop",
        "driver: goals": "build/driver/goal_test"}
+OF_TOOLS = ["tools: test_console", "tools: test_container", "tools: test_demo", "tools: test_docs", "tools: test_readme",
+            "tools: test_release"]
 
 
 @pytest.fixture
@@ -54,13 +59,14 @@ def root(tmp_path):
 
 @pytest.fixture
 def repository(root):
-    def git(*arguments):
-        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=root, check=True, capture_output=True)
+    def run(*arguments):
+        result = git.run("-c", "user.name=a", "-c", "user.email=a@b", *arguments, root=root)
+        assert result.returncode == 0, result.stderr
 
-    git("init", "-q", "-b", "main")
-    git("add", "-A")
-    git("commit", "-qm", "first")
-    return root, git
+    run("init", "-q", "-b", "main")
+    run("add", "-A")
+    run("commit", "-qm", "first")
+    return root, run
 
 
 def collected(root):
@@ -101,7 +107,7 @@ NAMES = {
     "Each/Angles.AreRead/0": ["driver: Each/Angles.AreRead/0"],
     "test_stop": ["driver: Each/Angles.AreRead/0", "driver: robot.StopTest.KeepsItsLine"],
     "goal_test": ["driver: goals"],
-    "tools": ["tools: test_console", "tools: test_demo", "tools: test_readme"],
+    "tools": OF_TOOLS,
     "test_node StopTest": ["driver: robot.StopTest.KeepsItsLine", "driver: test_node"],
 }
 
@@ -143,18 +149,27 @@ CHANGES = {
     "driver/test/typed/test_cancel.py": ["driver: test_cancel"],
     "driver/test/test_stop.cpp": sorted(ALL),
     "driver/test/nodes/support.py": [*sorted(ALL), "driver: test_cancel", "driver: test_node", "tools: test_demo"],
-    "driver/src/stop.cpp": [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", "tools: test_console",
-                            "tools: test_demo", "tools: test_readme"],
-    "driver_cli/CMakeLists.txt": ["driver_cli: test_cli", "tools: test_console", "tools: test_demo", "tools: test_readme"],
-    "docs/use/commands/io.md": ["driver: test_cancel", "tools: test_readme"],
-    "docs/use/simulator.md": ["tools: test_readme"],
-    "README.md": ["tools: test_readme"],
+    "driver/src/stop.cpp": [*sorted(ALL), "driver: test_cancel", "driver: test_node", "driver_cli: test_cli", *OF_TOOLS],
+    "driver/CHANGELOG.rst": ["tools: test_release"],
+    "driver_cli/CMakeLists.txt": ["driver_cli: test_cli", *OF_TOOLS],
+    "docs/use/commands/io.md": ["driver: test_cancel", "tools: test_docs", "tools: test_readme"],
+    "docs/use/simulator.md": ["tools: test_docs", "tools: test_readme"],
+    "docs/site/conf.py": ["tools: test_docs"],
+    "README.md": ["tools: test_docs", "tools: test_readme"],
+    "SECURITY.md": ["tools: test_docs", "tools: test_readme"],
+    "CHANGELOG.rst": ["tools: test_docs"],
+    "CITATION.cff": [],
     "tools/ur_tools/demo.py": ["tools: test_demo"],
+    "tools/ur_tools/demo_figure.py": ["tools: test_demo"],
     "tools/ur_tools/console.py": ["tools: test_console", "tools: test_demo"],
     "tools/test/test_console.py": ["tools: test_console"],
     "demo/figure.py": ["tools: test_demo"],
-    "LICENSE": [],
+    "LICENSE": ["tools: test_release"],
+    "Dockerfile": ["tools: test_container"],
+    ".dockerignore": ["tools: test_container"],
+    ".devcontainer/devcontainer.json": ["tools: test_container"],
     ".gitignore": [],
+    "ruff.toml": [],
 }
 
 

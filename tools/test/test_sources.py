@@ -1,8 +1,8 @@
 import shutil
-import subprocess
 
 import pytest
-from ur_tools import lint, system_packages
+import yaml
+from ur_tools import git, lint, system_packages
 from ur_tools.layout import ROOT, Layout
 
 BACKGROUND = True
@@ -22,6 +22,13 @@ def test_the_list_of_system_packages_has_one_name_per_line(tmp_path):
 
 def test_a_package_that_is_not_installed_is_reported_as_missing():
     assert system_packages.missing(["no-such-package-anywhere"]) == ["no-such-package-anywhere"]
+
+
+def test_continuous_integration_runs_all_tests_thoroughly():
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
+    commands = [step["run"].splitlines()[-1] for job in workflow["jobs"].values() for step in job["steps"] if step.get("name") == "Test"]
+    assert commands == [".ci/run --ros installed", ".ci/run --ros ${{ matrix.ros }}"]
+    assert './ur test --thorough "$@"' in (ROOT / ".ci" / "run").read_text()
 
 
 @pytest.fixture
@@ -60,14 +67,22 @@ def test_a_test_that_imports_a_name_that_does_not_exist_is_found(layout, tmp_pat
     (tmp_path / "tools" / "library.py").write_text("LIMIT = 1\n")
     (tmp_path / "arm" / "test").mkdir(parents=True)
     (tmp_path / "arm" / "test" / "test_arm.py").write_text("from library import LIMITS\n\nprint(LIMITS)\n")
-    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    git.run("init", "-q", root=tmp_path)
     result = lint.check_mypy(layout)
     assert not result.ok and 'test_arm.py:1: error: Module "library" has no attribute "LIMITS"' in result.text
     assert result.text.count("error:") == 1
 
 
-def test_the_sources_are_checked_by_each_program(layout):
+@pytest.mark.parametrize("output, status, ok", [("", 0, True), ("a.cpp:1:2: warning: unused", 0, False), ("", 139, False)])
+def test_clang_tidy_passes_only_without_a_finding_and_without_a_crash(layout, output, status, ok):
+    install_program(layout, "clang-tidy", output, status)
+    source = ROOT / "rcl_cxx" / "src" / "a.cpp"
+    assert lint._check_tidy(str(layout.venv / "bin" / "clang-tidy"), layout.base / "compile_commands.json", source).ok is ok
+
+
+def test_the_sources_are_checked_by_each_program(layout, capsys):
     for name in ("clang-format", "ruff", "mypy"):
         install_program(layout, name, "finding", 1)
     failed = [check.name for check in lint.checks(layout) if not check.ok]
+    assert capsys.readouterr().out == "==> Checking the sources\n"
     assert failed == ["sources: formatting", "sources: ruff", "sources: mypy"]

@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 from ur_tools import main, packages, runner, schedule, summary, testing
@@ -27,6 +28,12 @@ def test_passed_cases_of_a_report_are_counted_without_skipped_ones(tmp_path):
 def test_a_program_without_a_report_is_one_case(tmp_path):
     assert runner.read_cases(tmp_path / "none.xml", True) == runner.Cases(1, [])
     assert runner.read_cases(tmp_path / "none.xml", False) == runner.Cases(0, [""])
+
+
+def test_a_program_that_runs_no_case_fails(tmp_path):
+    report = tmp_path / "report.xml"
+    report.write_text("<testsuite><testcase name='filtered' status='notrun'/></testsuite>")
+    assert runner.read_cases(report, True) == runner.Cases(0, ["ran no case"])
 
 
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
@@ -148,19 +155,21 @@ def test_a_test_whose_failed_cases_have_no_names_is_repeated_as_a_whole():
 
 
 class FakeRunner:
-    """Determines whether the repetition of a case fails."""
+    """Determines which failures a repetition has."""
 
-    def __init__(self, fails_alone):
-        self._failures = ["Suite.bad"] if fails_alone else []
+    def __init__(self, failures=()):
+        self._failures, self.repeated = list(failures), []
 
     def run(self, test):
-        return runner.Result(test, runner.Cases(1 - len(self._failures), self._failures), 1.0, 0.1, "")
+        self.repeated.append(test)
+        return runner.Result(test, runner.Cases(1, self._failures), 1.0, 0.1, "")
 
 
 def test_a_failed_case_fails_the_run_even_if_it_passes_alone(capsys):
     results = [result(["a/program"], ["Suite.bad"])]
-    for fails_alone, verdict in ((True, "fails alone too"), (False, "passes alone: depends on load or on other tests")):
-        verdicts = testing._diagnose(FakeRunner(fails_alone), results)
+    for failures, verdict in ((["Suite.bad"], "fails alone too"), ([runner.NO_REPORT], "fails alone too"),
+                              ([], "passes alone: depends on load or on other tests")):
+        verdicts = testing._diagnose(FakeRunner(failures), results)
         assert summary.report(results, [], verdicts, 1.0) == 1
         lines = capsys.readouterr().out.splitlines()
         assert f"    a: test Suite.bad ({verdict})" in lines
@@ -178,8 +187,17 @@ def test_skipped_cases_are_named_with_their_reason_and_fail_in_continuous_integr
         assert text.splitlines()[-1] == "6 passed, 0 failed"
 
 
-def test_results_without_failures_are_not_repeated():
-    assert testing._diagnose(None, [result(["a/program"], [])]) == {}
+def test_results_without_failures_and_those_at_their_time_limit_are_not_repeated():
+    assert testing._diagnose(None, [result(["a/program"], []), replace(result(["a/program"], ["Suite.bad"]), in_time=False)]) == {}
+
+
+def test_the_repetition_of_failures_is_bounded(capsys):
+    started = FakeRunner()
+    failed = result(["a/program"], ["Suite.bad"])
+    slow = replace(failed, test=replace(failed.test, limit=1200.0), seconds=50.0)
+    testing._diagnose(started, [failed, slow] + [failed] * 5)
+    assert [test.limit for test in started.repeated] == [1.0, 100.0, 1.0, 1.0, 1.0]
+    assert "2 more failed tests are not repeated" in capsys.readouterr().out
 
 
 def run_program(tmp_path, monkeypatch, program, limit=20.0):
@@ -205,11 +223,34 @@ def test_a_program_that_fails_is_reported_with_the_reason(tmp_path, monkeypatch)
         assert found.cases == runner.Cases(0, [""]) and explanation in found.output, found.output
 
 
+def test_a_case_that_hangs_is_named_before_the_time_limit(tmp_path):
+    file = tmp_path / "test_a.py"
+    file.write_text("import time\n\n\ndef test_hangs():\n    time.sleep(120.0)\n")
+    test, = testing._pytest(Layout.of_environment(), "a", tmp_path)
+    command = [sys.executable, *runner._command(test, tmp_path / "report.xml", 0.4)[1:]]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as running:
+        assert any("in test_hangs" in line for line in running.stdout)
+        running.kill()
+
+
+def test_each_copy_of_a_repeated_program_has_its_own_report(tmp_path, monkeypatch):
+    monkeypatch.setattr(runner, "ROOT", tmp_path)
+    program = ("import pathlib, sys; path = pathlib.Path(sys.argv[1].partition(':')[2]); "
+               "path.write_text('<testsuite><testcase name=\"a\"/></testsuite>'); print(path)")
+    test = runner.Test("a: test", [sys.executable, "-c", program, "--gtest_output=xml:shared.xml"], tmp_path, 20.0)
+    with runner.Runner(Layout(Layout.of_environment().ros), tmp_path) as started:
+        results = [started.run(test) for _unused in range(2)]
+    assert [found.cases for found in results] == [runner.Cases(1, [])] * 2
+    assert len({found.output.split()[0] for found in results}) == 2
+
+
 def test_unknown_options_of_a_command_are_forwarded_to_its_program():
     current = Layout.of_environment().ros
-    for arguments, ros, debug, forwarded in (("demo --model ur5e --ros kilted", "kilted", False, ["--model", "ur5e"]),
-                                             ("demo --debug --speed 0.1", current, True, ["--speed", "0.1"]),
-                                             ("demo --help", current, False, ["--help"]),
-                                             ("sim -- --help", current, False, ["--help"])):
+    for arguments, ros, debug, jobs, forwarded in (("demo --model ur5e --ros kilted", "kilted", False, 0, ["--model", "ur5e"]),
+                                                   ("demo --debug --speed 0.1", current, True, 0, ["--speed", "0.1"]),
+                                                   ("demo --speed 0.1 -j4", current, False, 4, ["--speed", "0.1"]),
+                                                   ("demo -j 4 --jog", current, False, 4, ["--jog"]),
+                                                   ("demo --help", current, False, 0, ["--help"]),
+                                                   ("sim -- --help", current, False, 0, ["--help"])):
         options = main._parse(arguments.split())
-        assert (options.ros, options.debug, main._forwarded(options)) == (ros, debug, forwarded), arguments
+        assert (options.ros, options.debug, options.jobs, main._forwarded(options)) == (ros, debug, jobs, forwarded), arguments

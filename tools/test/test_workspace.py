@@ -2,35 +2,22 @@
 
 import argparse
 import pathlib
-import subprocess
 
 import pytest
 from ament_index_python.packages import get_package_share_directory
 from catkin_pkg.packages import find_packages
 from colcon_core import package_discovery, package_identification
 from ur_ros_rtde_cli import new
-from ur_tools import packages
+from ur_tools import git, packages
 from ur_tools.layout import ROOT
 
 BACKGROUND = True
 
 
-def checkout(folder: pathlib.Path) -> pathlib.Path:
-    """Copies tracked and new files, as `git clone` would, without build results."""
-    files = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True,
-                           text=True, check=True).stdout.split("\n")
-    for name in filter(None, files):
-        if (ROOT / name).is_file():
-            target = folder / name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes((ROOT / name).read_bytes())
-    return folder
-
-
 @pytest.fixture(scope="module")
 def workspace(tmp_path_factory):
     folder = tmp_path_factory.mktemp("workspace")
-    checkout(folder / "src" / "ur_ros_rtde")
+    git.copy_files(folder / "src" / "ur_ros_rtde")
     return folder
 
 

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from ur_tools.environment import workspace_environment
+from ur_tools.environment import shell_environment
 from ur_tools.layout import ROOT, Layout
 
 PAGE = (ROOT / "docs" / "use" / "writing_a_plugin.md").read_text()
@@ -19,7 +19,7 @@ READY = "until ur call get_robot_status --quiet > /dev/null 2>&1; do sleep 0.2; 
 
 
 def environment(folder):
-    env = {**workspace_environment(Layout.of_environment()), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
+    env = {**shell_environment(Layout.of_environment()), "ROBOT_IP": os.environ.get("UR_TEST_ADDRESS", "127.0.1.200")}
     if shutil.which("ccache"):  # as in the build of the packages; the folder has another name in each run
         env.update(CMAKE_C_COMPILER_LAUNCHER="ccache", CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_BASEDIR=str(folder),
                    CCACHE_NOHASHDIR="1")

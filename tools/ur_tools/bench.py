@@ -26,7 +26,6 @@ from . import (
     bench_trace,
     bench_trajectory,
     bench_viewer,
-    boilerplate,
     console,
     ports,
     simulation,
@@ -196,8 +195,6 @@ def run(options: argparse.Namespace, layout: Layout) -> int:
         bench_compare.show(old, results)
     if options.report:
         bench_report.write(options.report, layout, results, old)
-    if not (options.stream or options.input or any(getattr(options, name) for name in SEPARATE)):
-        console.line("\n" + boilerplate.table())
     return 0
 
 

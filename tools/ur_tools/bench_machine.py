@@ -5,11 +5,11 @@ import pathlib
 import platform
 import re
 import resource
-import subprocess
 import time
 from typing import Dict, List
 
-from .layout import ROOT, Layout
+from . import git, machine
+from .layout import Layout
 
 # Files that do not affect the driver.
 _NOT_DRIVER = (":!*.md", ":!tools", ":!bench", ":!chaos", ":!demo")
@@ -38,16 +38,12 @@ def _compiler(layout: Layout) -> str:
 
 
 def _git(*arguments: str) -> str:
-    try:
-        result = subprocess.run(["git", *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                universal_newlines=True)
-    except OSError:
-        return ""
+    result = git.run(*arguments)
     return result.stdout.strip() if result.returncode == 0 else ""
 
 
 def describe(layout: Layout) -> Dict[str, object]:
-    return {"cpu": _cpu(), "cores": len(os.sched_getaffinity(0)), "kernel": platform.release(), "governor": _governor(),
+    return {"cpu": _cpu(), "cores": machine.cores(), "kernel": platform.release(), "governor": _governor(),
             "compiler": _compiler(layout), "ros": layout.ros, "build": layout.variant or "release"}
 
 

@@ -4,15 +4,16 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from . import build_times, console, disk, downloads, system_packages, venv
+from . import build_times, console, disk, downloads, lock, machine, system_packages, venv
 from .build_times import BuildTimes, Forecast
 from .environment import build_environment
-from .layout import ROOT, STATE, Layout
+from .layout import ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 from .packages import Package, discover_with_interfaces, state, with_dependencies
 from .processes import end_group
@@ -20,6 +21,8 @@ from .processes import end_group
 STAMP = "ur_stamp.txt"
 MEMORY_PER_JOB = 1.0e9  # bytes, of the largest translation units
 WORKERS = 2  # packages at a time, each with all jobs
+# CMake reads these variables when it configures a build folder for the first time, and keeps the values.
+COMPILER_VARIABLES = ("CC", "CFLAGS", "CXX", "CXXFLAGS", "LDFLAGS")
 _NOT_IN_PATHS = ":;$\\\"'"
 
 
@@ -33,8 +36,7 @@ def check_path(root: pathlib.Path) -> None:
 
 def default_jobs() -> int:
     """One job per core, limited by memory."""
-    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_PER_JOB)))
+    return max(1, min(machine.cores(), int(machine.memory() / MEMORY_PER_JOB)))
 
 
 @dataclass
@@ -48,23 +50,50 @@ class Options:
         self.jobs = self.jobs or default_jobs()
 
 
+def _includes(layout: Layout) -> List[pathlib.Path]:
+    """Returns the CMake files that each package includes."""
+    files = [] if layout.is_installed else [layout.provider]
+    return files + ([ROOT / "tools" / "cmake" / "sanitize.cmake"] if layout.variant in SANITIZERS else [])
+
+
+def _common_sources(layout: Layout) -> List[pathlib.Path]:
+    """Returns the files outside of the packages that each build depends on."""
+    generators = [] if layout.is_installed else sorted((layout.provider.parent / "generators").glob("*.py"))
+    return [*layout.requirements, *_includes(layout), *generators]
+
+
+def _compiler() -> str:
+    """Returns which compiler and options the environment selects."""
+    return " ".join(" ".join(f"{name}={os.environ[name]}".split()) for name in COMPILER_VARIABLES if os.environ.get(name))
+
+
 def cmake_arguments(options: Options, tests: bool) -> List[str]:
     layout = options.layout
-    includes = [] if layout.is_installed else [layout.provider]
     build_type = "Release"
     arguments = [] if layout.is_installed else [f"-DROS_WHEELS_PREFIX={layout.venv}"]
     if layout.variant == "debug":
         build_type = "Debug"
     elif layout.variant:
         build_type = "RelWithDebInfo"
-        includes.append(ROOT / "tools" / "cmake" / "sanitize.cmake")
         arguments.append(f"-DUR_SANITIZE={layout.variant}")
     return ["-GNinja", f"-DCMAKE_BUILD_TYPE={build_type}",
             # CMake's default, -O3, compiles more slowly: g++ needs a quarter of its time for what -O2 adds to -O1. The trajectory
             # library benefits from -O3 and sets it itself.
             "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
-            "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, includes)), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
-            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", *arguments]
+            "-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES=" + ";".join(map(str, _includes(layout))), "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+            "-DBUILD_TESTING=" + ("ON" if tests else "OFF"), "-Wno-unused-cli", f"-DUR_COMPILER={_compiler()}", *arguments]
+
+
+def is_foreign(folder: pathlib.Path, source: pathlib.Path) -> bool:
+    """Returns whether CMake has configured a build folder for other sources, as before the checkout was moved, or for another compiler.
+    It cannot change either."""
+    try:
+        text = (folder / "CMakeCache.txt").read_text(errors="replace")
+    except FileNotFoundError:
+        return False
+    cache = dict(re.findall(r"^(CMAKE_HOME_DIRECTORY|UR_COMPILER):\w+=(.*)$", text, re.M))
+    is_moved = os.path.realpath(cache.get("CMAKE_HOME_DIRECTORY", "")) != os.path.realpath(source)  # links may lead to the same sources
+    return is_moved or cache.get("UR_COMPILER", "") != _compiler()
 
 
 class Stamps:
@@ -72,8 +101,8 @@ class Stamps:
 
     def __init__(self, options: Options, packages: Dict[str, Package]):
         self._layout = options.layout
-        options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)[:-1]).encode())
-        for file in (*options.layout.requirements, options.layout.provider):
+        options_digest = hashlib.sha256("\0".join(cmake_arguments(options, False)).encode())
+        for file in _common_sources(options.layout):
             options_digest.update(file.read_bytes())
         options_digest.update(venv.identity(options.layout).encode())
         self._states: Dict[str, str] = {}
@@ -207,7 +236,8 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
     command = _colcon(options, outdated, [package.folder for package in packages.values()], tests)
     with output.open("w") as file:
         process = subprocess.Popen(command, cwd=layout.base, env=build_environment(layout, options.jobs), stdout=file,
-                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
+                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
+                                   pass_fds=tuple(lock.held()))  # colcon goes on if this process is killed
     times = _times(options)
     progress = Progress(layout, output, stamps, Forecast(times, _firsts(layout, outdated), tests), tests)
     try:
@@ -226,7 +256,7 @@ def _times(options: Options) -> BuildTimes:
     return BuildTimes(options.layout.build_times, options.jobs)
 
 
-def _firsts(layout: Layout, names: List[str]) -> Dict[str, bool]:
+def _firsts(layout: Layout, names: Iterable[str]) -> Dict[str, bool]:
     """Returns for each package whether this is its first build."""
     return {name: not (layout.build / name / ".ninja_log").is_file() for name in names}
 
@@ -261,7 +291,7 @@ class Pending:
     def _duration(self, options: Options) -> str:
         times, first = _times(options), _firsts(options.layout, self.outdated)
         estimates = [times.first(name, self.tests) for name in self.outdated]
-        seconds = self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
+        seconds = bool(self.system) * system_packages.SECONDS + self.venv * venv.SECONDS + sum(estimate for estimate, _ in estimates)
         most = seconds + (build_times.SLOW_HOST - 1.0) * sum(estimate for estimate, steps in estimates if not steps)
         again = [name for name, is_first in first.items() if not is_first]
         duration = f"at most {build_times.rounded(most)}" if again else f"about {build_times.span(seconds, most)}"
@@ -273,6 +303,12 @@ class Pending:
         return duration
 
 
+def needed_space(layout: Layout, names: Iterable[str]) -> float:
+    """Returns how many bytes a build of these packages needs: the first one more, also for the virtual environment."""
+    share = sum(_firsts(layout, names).values()) / len(discover_with_interfaces())
+    return disk.LATER + disk.ENVIRONMENT * (not venv.is_current(layout)) + disk.BUILD * share
+
+
 def _pending_setup(layout: Layout) -> Pending:
     return Pending(system_packages.absent(), not venv.is_current(layout), not downloads.is_current(), [])
 
@@ -282,7 +318,7 @@ def _setup(layout: Layout, pending: Pending) -> None:
         check_path(ROOT)
         if layout.is_installed:
             venv.python_of_ros(layout)
-        disk.check(STATE, disk.FIRST_RUN if pending.venv else disk.LATER)
+        disk.check(STATE, needed_space(layout, pending.outdated))
     system_packages.ensure()
     venv.ensure(layout)
     downloads.ensure(layout)
@@ -301,6 +337,8 @@ def setup(layout: Layout) -> None:
 
 def setup_viewer(layout: Layout) -> None:
     """Installs the Python packages of the viewer if they are missing. The build needs none of them."""
+    if venv.has_viewer(layout):
+        return
     with Lock("build"):
         venv.ensure_viewer(layout)
 
@@ -333,6 +371,9 @@ def build(options: Options) -> Dict[str, Package]:
     with Lock("build"):
         packages = _chosen(options)
         pending, stamps = _pending(options, packages)  # another ./ur may have built them while this one waited
+        for name in pending.outdated:
+            if is_foreign(options.layout.build / name, packages[name].folder):
+                shutil.rmtree(options.layout.build / name)
         if pending:
             console.step(pending.text(options))
         _setup(options.layout, pending)

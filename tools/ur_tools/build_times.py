@@ -28,6 +28,7 @@ REFERENCE: Dict[str, Tuple[float, float]] = {
     "ur_ros_rtde_tutorials": (28.0, 28.0),
     "ur_ros_rtde_viewer": (1.0, 1.0),
 }
+SERIAL = 12.0  # s of the build of a package that take as long on more cores: its configuration, and one step after the other
 SLOW_HOST = 1.9  # of the times of REFERENCE, on the slowest of three hosts with two cores: 24 min with all tests
 UNKNOWN_PACKAGE = (30.0, 30.0)
 STEPS_PER_SECOND = 1.3  # until ninja reports the number of steps of a package
@@ -66,7 +67,9 @@ class BuildTimes:
         entry = self._entry("first", name, tests)
         if entry:
             return entry["seconds"], entry["steps"]
-        return REFERENCE.get(name, UNKNOWN_PACKAGE)[tests] * REFERENCE_CORES / self._jobs, 0
+        reference, share = REFERENCE.get(name, UNKNOWN_PACKAGE)[tests], REFERENCE_CORES / self._jobs
+        serial = min(reference, SERIAL)
+        return serial * max(1.0, share) + (reference - serial) * share, 0
 
     def last(self, name: str, tests: bool) -> Optional[Tuple[float, int]]:
         entry = self._entry("last", name, tests)

@@ -102,7 +102,8 @@ def _run_faults(options: argparse.Namespace, layout: Layout) -> int:
         command.append("--sanitizer")
     limit = 120.0 + max(FAULT_SECONDS * options.faults, 120.0 * options.minutes)
     with isolation.Domain() as domain, Programs(log) as programs:  # several runs, and a driver of the user, may run beside it
-        env = {**run_environment(layout), **domain.environment(), "PYTHONDONTWRITEBYTECODE": "1"}
+        env = {**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"}
+        domain.isolate(env)
         code = programs.run(command, env, limit)
     if code != 0:
         console.line(f"To repeat these goals and faults: ./ur chaos --faults {options.faults} --seed {options.seed} "

@@ -5,8 +5,10 @@ import shutil
 
 from . import console
 
-FIRST_RUN = 2.5e9  # bytes: virtual environment, pip's cache, a build with tests
-LATER = 0.3e9
+# Bytes.
+ENVIRONMENT = 0.9e9  # the virtual environment and pip's cache
+BUILD = 1.3e9  # all packages with their tests, and their installation
+LATER = 0.3e9  # a later build
 
 
 def free(path: pathlib.Path) -> int:

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 from typing import Iterator, List, Tuple
 
-from . import console, pins, venv
+from . import console, git, pins, venv
 from .layout import ROOT, STATE
 
 FOLDER = STATE / "docs"
@@ -31,7 +31,7 @@ def ensure_sphinx() -> pathlib.Path:
         return python
     console.step(f"Installing Sphinx ({MEGABYTES} MB)")
     shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run([venv.find_python(), "-m", "venv", str(folder)], check=True)
+    subprocess.run([venv.find_python(venv.NEWEST, "Sphinx needs"), "-m", "venv", str(folder)], check=True)
     pins.install(python, REQUIREMENTS)
     stamp_file.write_text(stamp)
     return python
@@ -59,12 +59,7 @@ def _write_index(source: pathlib.Path) -> None:
 def _stage(python: pathlib.Path, source: pathlib.Path) -> None:
     """Copies the files that git tracks or would add, which the pages link to, and adds what is generated."""
     shutil.rmtree(source, ignore_errors=True)
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
-    names = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout.split("\0")
-    for name in filter(None, names):
-        if (ROOT / name).is_file():
-            (source / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(ROOT / name, source / name)
+    git.copy_files(source)
     if subprocess.run([str(python), "-m", "ur_tools.docs_reference", str(source)], cwd=ROOT / "tools").returncode != 0:
         raise console.Failure("The reference cannot be generated: see the error above")
     _write_index(source)

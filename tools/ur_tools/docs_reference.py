@@ -1,7 +1,6 @@
 """Writes the pages of the site that follow from the sources. Runs in the environment of Sphinx, which has YAML."""
 
 import ast
-import importlib.util
 import os
 import pathlib
 import re
@@ -11,7 +10,7 @@ from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
 from . import docs_commands, docs_examples, docs_plugin_api
 from .docs_commands import Command
-from .layout import ROOT
+from .layout import ROOT, load
 
 MESSAGES = ROOT / "ur_ros_rtde_msgs"
 PARTS = ("Goal", "Result", "Feedback")
@@ -22,19 +21,8 @@ ENDPOINTS = {"create_publisher": "Published topics", "create_subscription": "Sub
              "create_service": "Services", "serve": "Services"}
 Page = List[str]
 
-
-def _load(path: str) -> Any:
-    """Returns a module of another package, which need not be built."""
-    spec = importlib.util.spec_from_file_location(pathlib.Path(path).stem, ROOT / path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # for dataclasses
-    spec.loader.exec_module(module)
-    return module
-
-
-interface_files = _load("ur_ros_rtde_cli/ur_ros_rtde_cli/interface_files.py")
-launch_arguments = _load("ur_ros_rtde/ur_ros_rtde_launch/launch_arguments.py")
+interface_files = load("ur_ros_rtde_cli/ur_ros_rtde_cli/interface_files.py")
+launch_arguments = load("ur_ros_rtde/ur_ros_rtde_launch/launch_arguments.py")
 
 
 def _cell(text: str) -> str:

@@ -11,8 +11,9 @@ import time
 from dataclasses import dataclass
 from typing import Callable, List, Tuple
 
-from . import build, console, disk, ports, system_packages, venv
+from . import build, console, disk, machine, ports, system_packages, venv
 from .layout import ROOT, STATE, Layout
+from .packages import discover_with_interfaces
 
 OK, NOTE, FAILED = "OK", "warning", "fault"  # as in `ur doctor --robot`
 DEMO_ADDRESS = "127.0.0.1"
@@ -73,9 +74,9 @@ def system() -> Finding:
     return Finding("system packages", FAILED, text, "sudo apt-get install -y --no-install-recommends " + " ".join(absent))
 
 
-def python() -> Finding:
+def python(layout: Layout) -> Finding:
     try:
-        return Finding("Python", OK, venv.find_python())
+        return Finding("Python", OK, venv.python_for(layout))
     except console.Failure as failure:
         first, _, rest = str(failure).partition("\n")
         return Finding("Python", FAILED, first, rest)
@@ -96,8 +97,7 @@ def checkout() -> Finding:
 
 
 def free_space(layout: Layout) -> Finding:
-    needed = disk.LATER if venv.is_current(layout) else disk.FIRST_RUN
-    free = disk.free(STATE)
+    needed, free = build.needed_space(layout, discover_with_interfaces()), disk.free(STATE)
     text = f"{free / 1e9:.1f} GB free, {needed / 1e9:.1f} GB needed"
     if free < needed:
         return Finding("disk", FAILED, text, f"Free some space on the disk that holds {STATE}.")
@@ -105,8 +105,7 @@ def free_space(layout: Layout) -> Finding:
 
 
 def memory() -> Finding:
-    total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    jobs, cores = build.default_jobs(), len(os.sched_getaffinity(0))
+    total, cores, jobs = machine.memory(), machine.cores(), build.default_jobs()
     text = f"{total / 1e9:.1f} GB, {cores} core{'s' * (cores > 1)}: builds with {jobs} job{'s' * (jobs > 1)}"
     if total < LEAST_MEMORY:
         return Finding("memory", NOTE, text, "The largest files take about 1 GB each: close other programs, or add swap space.")
@@ -178,8 +177,8 @@ def show(finding: Finding) -> None:
 
 
 def run(layout: Layout) -> int:
-    checks: Tuple[Callable[[], Finding], ...] = (checkout, compiler, system, python, lambda: free_space(layout), memory, demo_ports,
-                                                 loopback, jitter)
+    checks: Tuple[Callable[[], Finding], ...] = (checkout, compiler, system, lambda: python(layout), lambda: free_space(layout), memory,
+                                                 demo_ports, loopback, jitter)
     failed = 0
     for check in checks:
         finding = check()

@@ -6,6 +6,7 @@ import pathlib
 import shutil
 from typing import Dict, Iterable
 
+from . import git
 from .downloads import ur_rtde_archive
 from .layout import ROOT, Layout
 
@@ -14,6 +15,8 @@ OF_A_WORKSPACE = ("COLCON_DEFAULTS_FILE", "PYTHONHOME", "UR_CHECKOUT")
 # another middleware than the one it is linked with.
 FOREIGN = ("RMW_IMPLEMENTATION", "ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_LOCALHOST_ONLY", "AMENT_PREFIX_PATH",
            "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE", *OF_A_WORKSPACE)
+# Prefixes of variables that select tests: those of the user's shell would also affect which tests a build finds.
+OF_TESTS = ("GTEST_", "PYTEST_")
 
 # The variable that selects a profile, with our profile, for Fast DDS 3 and Fast DDS 2.
 FASTDDS_PROFILES = {"FASTDDS_DEFAULT_PROFILES_FILE": "fastdds.xml", "FASTRTPS_DEFAULT_PROFILES_FILE": "fastrtps.xml"}
@@ -24,8 +27,8 @@ def _path(*parts: object) -> str:
 
 
 def _base(layout: Layout) -> Dict[str, str]:
-    foreign = OF_A_WORKSPACE if layout.is_installed else FOREIGN
-    env = {name: value for name, value in os.environ.items() if name not in foreign}
+    foreign = (*git.OF_A_REPOSITORY, *(OF_A_WORKSPACE if layout.is_installed else FOREIGN))
+    env = {name: value for name, value in os.environ.items() if name not in foreign and not name.startswith(OF_TESTS)}
     env["VIRTUAL_ENV"] = str(layout.venv)
     env["PATH"] = _path(layout.venv / "bin", env.get("PATH", os.defpath))
     if not layout.is_installed:
@@ -70,21 +73,21 @@ def run_environment(layout: Layout) -> Dict[str, str]:
         env["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     # Participants are announced to the network only if the user asks for it.
     env.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    _set_fastdds_profile(env, layout)
+    if layout.distribution == "humble":  # does not know it
+        env.setdefault("ROS_LOCALHOST_ONLY", "1")
+    if not any(variable in env for variable in FASTDDS_PROFILES):
+        env.update(fastdds_profile(layout))
     return env
 
 
-def _set_fastdds_profile(env: Dict[str, str], layout: Layout) -> None:
-    """Sets the Fast DDS profile for the user's programs; ours set it themselves. Only the installed version's profile exists."""
-    if not any(variable in env for variable in FASTDDS_PROFILES):
-        for variable, name in FASTDDS_PROFILES.items():
-            file = layout.install / "share" / "ur_ros_rtde" / "config" / name
-            if file.is_file():
-                env[variable] = str(file)
+def fastdds_profile(layout: Layout) -> Dict[str, str]:
+    """Returns the variable with the Fast DDS profile for the user's programs; ours set it themselves."""
+    folder = layout.install / "share" / "ur_ros_rtde" / "config"  # has the profile of the installed version
+    return {variable: str(folder / name) for variable, name in FASTDDS_PROFILES.items() if (folder / name).is_file()}
 
 
 def workspace_environment(layout: Layout) -> Dict[str, str]:
-    """Returns run_environment() with `ur` on PATH and the arguments for `colcon build` in a user's own workspace."""
+    """Returns run_environment() with `ur` on PATH. Writes nothing: `ur call stop` works on a full disk too."""
     env = run_environment(layout)
     # `ur` of ur_ros_rtde_cli passes the commands of the checkout to ./ur, which uses the same build.
     env["UR_CHECKOUT"] = str(ROOT)
@@ -92,13 +95,20 @@ def workspace_environment(layout: Layout) -> Dict[str, str]:
     env["CMAKE_PREFIX_PATH"] = _path(layout.install, env.get("CMAKE_PREFIX_PATH"))
     folders = [layout.install / "lib" / name for name in ("ur_ros_rtde", "ur_ros_rtde_cli", "ur_ros_rtde_python")]
     env["PATH"] = _path(*folders, env["PATH"])  # the wheels have no `ros2 run`
+    return env
+
+
+def shell_environment(layout: Layout) -> Dict[str, str]:
+    """Returns workspace_environment() with the arguments for `colcon build` in a user's own workspace."""
+    env = workspace_environment(layout)
     if layout.is_installed:
         return env
     env["PYTHONPATH"] = _path(env["PYTHONPATH"], layout.provider.parent / "generators")
-    defaults = layout.base / "colcon_defaults.yaml"
     arguments = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", f"-DROS_WHEELS_PREFIX={layout.venv}",
                  f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={layout.provider}", "-Wno-unused-cli"]
-    defaults.write_text(json.dumps({"build": {"cmake-args": arguments}}))
+    defaults, text = layout.base / "colcon_defaults.yaml", json.dumps({"build": {"cmake-args": arguments}})
+    if not (defaults.is_file() and defaults.read_text() == text):
+        defaults.write_text(text)
     env["COLCON_DEFAULTS_FILE"] = str(defaults)
     return env
 

@@ -1,14 +1,16 @@
 """A pytest plugin that repeats a test that failed while the host stalled: the failure shows nothing about the software.
 
-A failure without a measured stall is never repeated. pytest-rerunfailures does the repetition. A fixture whose work began before
-the test sets `request.node.began` to that time of time.monotonic().
+A failure without a measured stall, or after the crash of a program, is never repeated. pytest-rerunfailures does the repetition. A
+fixture whose work began before the test sets `request.node.began` to that time of time.monotonic().
 """
 
+import gc
+import subprocess
 import time
 
 import pytest
 
-from ur_tools.stall_watch import REPEATS, StallWatch, failure
+from ur_tools.stall_watch import CRASHED, REPEATS, StallWatch, failure
 
 _watch = pytest.StashKey()
 _begin = pytest.StashKey()
@@ -28,13 +30,18 @@ def pytest_unconfigure(config):
     config.stash[_watch].close()
 
 
+def _a_program_has_crashed():
+    """Returns whether one of the programs of this process has crashed that a test or a fixture still refers to."""
+    return any(found.poll() in CRASHED for found in gc.get_objects() if type(found) is subprocess.Popen)
+
+
 def _blame_host(item):
     try:
         return (yield)
     except (Exception, pytest.fail.Exception) as error:
         began = getattr(item, "began", None) or item.stash[_begin]
         stall = item.config.stash[_watch].longest_since(began)
-        if stall == 0.0:
+        if stall == 0.0 or _a_program_has_crashed():
             raise
         text = failure(stall, item.nodeid)
         item.config.stash[_stalled].append(text)

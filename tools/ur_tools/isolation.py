@@ -1,43 +1,23 @@
 """Isolates tests that run in parallel, and removes the processes and shared memory that they leave behind."""
 
+import contextlib
 import os
 import pathlib
+import re
 import shutil
 import signal
-import socket
-from typing import Dict, Optional, Set
+import time
+from typing import Callable, Iterator, List, Set, Tuple
 
-from .console import Failure
+from .layout import load
 
-MARK = "UR_TEST_RUN"  # environment variable of every process that a test run starts
-FIRST_PORT, LAST_DOMAIN = 32768, 100  # of domain_coordinator
+MARK = "UR_TEST_RUN"  # environment variable of every process of a test: process id of the run, colon, number of the test
+_MARK = re.compile(rb"(?:^|\0)UR_TEST_RUN=(\d+:\d+)\0")
+KILL_LIMIT = 5.0  # s, after which killed processes are no longer waited for
+POLL_INTERVAL = 0.02  # s
+ros_domain = load("rcl_cxx/test/support/ros_domain.py")
+Domain = ros_domain.Domain
 _SHARED_MEMORY = pathlib.Path("/dev/shm")
-
-
-class Domain:
-    """Reserves a ROS domain and a loopback address on this machine, as ROS's domain_coordinator does: its owner has bound a port."""
-
-    def __init__(self) -> None:
-        self.number = 0
-        self._reservation: Optional[socket.socket] = None
-
-    def __enter__(self) -> "Domain":
-        for self.number in range(1, LAST_DOMAIN + 1):
-            self._reservation = socket.socket()
-            try:
-                self._reservation.bind(("", FIRST_PORT + self.number))
-                return self
-            except OSError:
-                self._reservation.close()
-        raise Failure(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
-
-    def __exit__(self, *_unused: object) -> None:
-        if self._reservation:
-            self._reservation.close()
-
-    def environment(self) -> Dict[str, str]:
-        return {"ROS_DOMAIN_ID": str(self.number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-                "UR_TEST_ADDRESS": f"127.0.1.{self.number}"}
 
 
 def fresh_folder(folder: pathlib.Path) -> pathlib.Path:
@@ -85,30 +65,63 @@ def _files_open() -> Set[str]:
     return used
 
 
-def _kill_stray_processes() -> None:
-    """Kills processes of this run that have left their session."""
-    mark = f"{MARK}={os.getpid()}".encode()
-    for environ in pathlib.Path("/proc").glob("[0-9]*/environ"):
+def _marked() -> Iterator[Tuple[int, str]]:
+    """Yields the process ids and marks of the processes of test runs: not those in another container, whose marks have other ids."""
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:
-            ours = mark in environ.read_bytes().split(b"\0")
+            found = _MARK.search((process / "environ").read_bytes())
+            if found and os.readlink(process / "ns" / "pid") == os.readlink("/proc/self/ns/pid"):
+                yield int(process.name), found[1].decode()
         except OSError:
             continue
-        if ours:
-            try:
-                os.kill(int(environ.parent.name), signal.SIGKILL)
-            except ProcessLookupError:
-                pass
+
+
+def _command(pid: int) -> str:
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+    except OSError:
+        return ""
+
+
+def left_behind(mark: str, limit: float) -> List[str]:
+    """Returns the commands of the processes with this mark that do not end within `limit` s."""
+    deadline = time.monotonic() + limit
+    while True:
+        left = [pid for pid, found in _marked() if found == mark]
+        if not left or time.monotonic() > deadline:
+            return [_command(pid) for pid in left]
+        time.sleep(POLL_INTERVAL)
+
+
+def kill(is_stray: Callable[[str], bool]) -> None:
+    """Kills the processes with such marks, also those that have left their session. Returns when they have ended."""
+    deadline = time.monotonic() + KILL_LIMIT
+    while time.monotonic() < deadline:
+        strays = [pid for pid, mark in _marked() if is_stray(mark)]
+        if not strays:
+            return
+        for pid in strays:
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+        time.sleep(POLL_INTERVAL)
+
+
+def _run_of(mark: str) -> str:
+    """Returns the process id of the test run."""
+    return mark.partition(":")[0]
 
 
 class CleanUp:
-    """At its end, kills the remaining processes of a run and removes shared memory that is no longer used."""
+    """Kills the processes that an earlier run has left when it was killed. At its end, kills those of this run, and removes shared memory
+    that is no longer used."""
 
     def __enter__(self) -> "CleanUp":
+        kill(lambda mark: not pathlib.Path("/proc", _run_of(mark)).exists())
         self._before = _shared_memory_of_user()
         return self
 
     def __exit__(self, *_unused: object) -> None:
-        _kill_stray_processes()
+        kill(lambda mark: _run_of(mark) == str(os.getpid()))
         new = _shared_memory_of_user() - self._before
         used = _shared_memory_in_use()
         for path in new:

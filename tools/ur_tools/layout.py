@@ -1,9 +1,11 @@
 """Paths: sources in the checkout, generated files in .ur/."""
 
+import importlib.util
 import os
 import pathlib
+import sys
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Any, Tuple
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STATE = ROOT / ".ur"
@@ -16,6 +18,16 @@ SUPPORTED_DISTRIBUTIONS = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 # The command that the user types: in `./ur shell` it is `ur`.
 PROGRAM = "ur" if os.environ.get("UR_CHECKOUT") == str(ROOT) else "./ur"
 SANITIZERS = ("address", "undefined", "thread")
+
+
+def load(path: str) -> Any:
+    """Returns a module of another package, which need not be built."""
+    spec = importlib.util.spec_from_file_location(pathlib.Path(path).stem, ROOT / path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # for dataclasses
+    spec.loader.exec_module(module)
+    return module
 
 
 def sourced() -> str:

@@ -7,7 +7,7 @@ import subprocess
 from dataclasses import dataclass
 from typing import List
 
-from . import console
+from . import console, git
 from .build import Options, build, cmake_arguments
 from .environment import build_environment
 from .layout import ROOT, Layout
@@ -24,15 +24,8 @@ class Check:
     text: str = ""
 
 
-def tracked_files() -> List[pathlib.Path]:
-    """Returns the files that git tracks or would add, without deleted ones."""
-    listing = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"], cwd=ROOT, check=True,
-                             stdout=subprocess.PIPE, universal_newlines=True).stdout
-    return [path for path in (ROOT / name for name in sorted(set(listing.split("\0"))) if name) if path.is_file()]
-
-
 def cpp_files() -> List[pathlib.Path]:
-    return [path for path in tracked_files() if path.suffix in CPP]
+    return [path for path in git.files(ROOT) if path.suffix in CPP]
 
 
 def _run_tool(layout: Layout, program: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
@@ -66,7 +59,7 @@ def check_ruff(layout: Layout) -> Check:
 
 def _test_folders() -> List[str]:
     """Returns the folders with tests in Python. Each is checked alone: the names of their modules repeat."""
-    folders = {path.relative_to(ROOT).parent for path in tracked_files() if path.match("test_*.py")}
+    folders = {path.relative_to(ROOT).parent for path in git.files(ROOT) if path.match("test_*.py")}
     return sorted(str(folder) for folder in folders if "test" in folder.parts)
 
 
@@ -82,7 +75,7 @@ def check_mypy(layout: Layout) -> Check:
 
 def check_paths() -> Check:
     found = []
-    for path in tracked_files():
+    for path in git.files(ROOT):
         if path == pathlib.Path(__file__) or path.suffix in (".png", ".patch"):
             continue
         try:
@@ -96,6 +89,7 @@ def check_paths() -> Check:
 
 
 def checks(layout: Layout) -> List[Check]:
+    console.step("Checking the sources")
     return [check_format(layout), check_ruff(layout), check_mypy(layout), check_paths()]
 
 
@@ -130,11 +124,15 @@ def tidy(layout: Layout) -> List[Check]:
         sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
         for source in sources:
             console.line(f"    {source.relative_to(ROOT)}")
-            result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT,
-                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
-            ok = "warning:" not in result.stdout and "error:" not in result.stdout
-            found.append(Check(f"clang-tidy: {source.relative_to(ROOT)}", ok, result.stdout))
+            found.append(_check_tidy(program, database, source))
     return found
+
+
+def _check_tidy(program: str, database: pathlib.Path, source: pathlib.Path) -> Check:
+    result = subprocess.run([program, "--quiet", "-p", str(database.parent), str(source)], cwd=ROOT, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, universal_newlines=True)
+    ok = result.returncode == 0 and "warning:" not in result.stdout
+    return Check(f"clang-tidy: {source.relative_to(ROOT)}", ok, result.stdout or console.tail(result.stderr, 10))
 
 
 def run(layout: Layout, with_tidy: bool) -> int:

@@ -1,30 +1,57 @@
-"""Locks: one ./ur at a time builds, and one tests, in a checkout; others wait."""
+"""Locks: one ./ur at a time builds or tests in a checkout; others wait."""
 
 import errno
 import fcntl
 import os
 import pathlib
 import sys
-from typing import IO, Optional
+from typing import IO, Dict, Optional, Set
 
 from . import console
+from .isolation import MARK
 from .layout import STATE
 
 _NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
+_held: Dict[pathlib.Path, IO[str]] = {}
 
 
 def _command() -> str:
     return " ".join(["./ur", *sys.argv[1:]])
 
 
+def _fail_inside(holder: str) -> None:
+    """Raises Failure if this process belongs to a test of the holder: each would wait for the other."""
+    run = os.environ.get(MARK, "").partition(":")[0]
+    if run and f"(process {run})" in holder:
+        raise console.Failure(f"A test of {holder} runs `{_command()}`, which would change the build that is being tested. Was a source "
+                              "edited after the tests started?")
+
+
+def held() -> Set[int]:
+    """Returns the descriptors of the locks of this process. A program that inherits them keeps the locks until it ends too."""
+    return {file.fileno() for file in _held.values()}
+
+
 class Lock:
-    """An exclusive lock on a file that names its holder. The kernel releases it when the process ends."""
+    """An exclusive lock on a file that names its holder. The kernel releases it when the process ends. A process that holds it can enter
+    further blocks with it."""
 
     def __init__(self, name: str, folder: pathlib.Path = STATE):
         self._path = folder / f"{name}.lock"
-        self._file: Optional[IO[str]] = None
+        self._file: Optional[IO[str]] = None  # of the outermost block
 
     def __enter__(self) -> "Lock":
+        if self._path not in _held:
+            self._acquire()
+        return self
+
+    def __exit__(self, *_unused: object) -> None:
+        if self._file:
+            del _held[self._path]
+            self._file.close()
+            self._file = None
+
+    def _acquire(self) -> None:
         while self._file is None:
             file = self._open()
             try:
@@ -33,16 +60,10 @@ class Lock:
                     file.truncate(0)
                     file.write(f"`{_command()}` (process {os.getpid()})")
                     file.flush()
-                    self._file = file
+                    self._file = _held[self._path] = file
             finally:
                 if self._file is None:
                     file.close()
-        return self
-
-    def __exit__(self, *_unused: object) -> None:
-        if self._file:
-            self._file.close()
-            self._file = None
 
     def _open(self) -> IO[str]:
         try:
@@ -59,7 +80,9 @@ class Lock:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             file.seek(0)
-            console.step(f"Waiting for {file.read() or 'another ./ur'}, which is running in this checkout")
+            holder = file.read() or "another ./ur"
+            _fail_inside(holder)
+            console.step(f"Waiting for {holder}, which is running in this checkout")
             fcntl.flock(file, fcntl.LOCK_EX)
 
     def _is_current(self, file: IO[str]) -> bool:

@@ -7,15 +7,17 @@ import errno
 import importlib
 import os
 import pathlib
+import re
 import shutil
 import signal
+import subprocess
 import sys
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 from xml.etree import ElementTree
 
 from . import build as building
 from . import console, disk, docs, doctor, fuzz, lint, pin_hashes, sbom, simulation, testing, viewer
-from .environment import program, run_environment, workspace_environment
+from .environment import program, run_environment, shell_environment, workspace_environment
 from .layout import DEFAULT, DISTRIBUTIONS, PROGRAM, ROOT, SANITIZERS, STATE, Layout
 from .lock import Lock
 from .processes import ignore, interrupt_on_termination
@@ -25,7 +27,7 @@ Command = Callable[[argparse.Namespace], int]
 DESCRIPTION = """\
 Builds, tests and demonstrates the ROS 2 driver for Universal Robots arms and its simulated controller. ROS 2 need not
 be installed: the first run creates a virtual environment with ROS 2 as wheels and builds everything; later runs build
-only what changed. All files are written to .ur/; `./ur clean` removes them.
+only what changed. What is downloaded and built is in .ur/; `./ur clean --all` removes it.
 """
 
 
@@ -41,6 +43,7 @@ CLI = {"call": "send a goal: ur call move_j \"{joint_positions: [0, -1.57, 1.57,
        "completion": "print what lets a shell complete command lines: eval \"$(./ur completion bash)\"",
        "urdf": "print the URDF of an arm: ur urdf --model ur10e",
        "calibration": "save the calibration of an arm for its URDF: ur calibration --robot ADDRESS --output FILE"}
+OF_ALL_PACKAGES = ("call", "plugins")  # show the actions and plugins of every package; the others need only that of the program
 # To a program, with all options that are not ours.
 FORWARDED = ("demo", "bench", "chaos", "plan", "compare-recording", "sim", "view", "doctor", *CLI)
 
@@ -88,7 +91,7 @@ def command_sim(options: argparse.Namespace) -> int:
 
 def command_shell(options: argparse.Namespace) -> int:
     layout = _build(options)
-    env = workspace_environment(layout)
+    env = shell_environment(layout)
     command = _forwarded(options)
     if command:
         if shutil.which(command[0], path=env.get("PATH")) is None:
@@ -146,7 +149,8 @@ def command_cli(options: argparse.Namespace) -> int:
     try:
         command = program(layout, "ur_ros_rtde_cli", "ur")
     except FileNotFoundError:
-        command = program(_build(options), "ur_ros_rtde_cli", "ur")
+        packages = None if options.command in OF_ALL_PACKAGES else ["ur_ros_rtde_cli"]
+        command = program(_build(options, packages=packages), "ur_ros_rtde_cli", "ur")
     os.execve(command, [str(command), *arguments], workspace_environment(layout))
 
 
@@ -221,7 +225,7 @@ def command_clean(options: argparse.Namespace) -> int:
                    if path.name.split("-")[0] in ("build", "install", "log", "test")]
     if not STATE.exists():
         return 0
-    with Lock("test"), Lock("build"):
+    with Lock("build"):
         for folder in folders:
             if folder.exists():
                 console.line(f"removing {folder.relative_to(ROOT)}")
@@ -355,8 +359,8 @@ def _own_options_first(arguments: List[str]) -> List[str]:
             own += arguments[index:index + 2]
             index += 2
             continue
-        (own if argument == "--debug" or argument.startswith(("--ros=", "--sanitize=", "--jobs=")) else rest).append(
-            argument)
+        is_own = argument == "--debug" or re.match(r"--(ros|sanitize|jobs)=|-j\d+$", argument)
+        (own if is_own else rest).append(argument)
         index += 1
     return own + (["--", *rest] if rest else [])
 
@@ -382,6 +386,9 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return options.function(options)
     except console.Failure as failure:
         print(f"\n{failure}", file=sys.stderr)
+        return 1
+    except subprocess.CalledProcessError as error:
+        print(f"\n{' '.join(map(str, error.cmd))} failed with status {error.returncode}", file=sys.stderr)
         return 1
     except BrokenPipeError:  # `./ur doctor | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

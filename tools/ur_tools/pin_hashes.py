@@ -15,8 +15,8 @@ from . import console, pins, venv
 FILES = tuple(sorted(path.stem for path in pins.FOLDER.glob("*.txt")))
 SOURCES = ("ur_rtde",)  # files whose packages are source archives, the same for all machines
 OF_WHEELS = ("jazzy", "kilted", "libraries", "oracle")  # exist for one processor
-OF_INSTALLED_ROS = ("browser", "tools", "viewer")  # used with every Python that a supported ROS has; the others with those of the wheels
-NEWEST_PYTHON = (3, 14)
+# Used with every Python that a supported ROS has; the others with those of the wheels.
+OF_INSTALLED_ROS = ("browser", "docs", "tools", "viewer")
 # Of the oldest supported system, Ubuntu 22.04. Newer systems install the same files.
 GLIBC = 35
 OLDEST_GLIBC = {"x86_64": 5, "aarch64": 17}
@@ -44,7 +44,7 @@ class Machine:
 
 def machines(name: str) -> List[Machine]:
     """Returns the machines on which this file of wheels/ is installed."""
-    newest = NEWEST_PYTHON if name in OF_INSTALLED_ROS else venv.SUPPORTED[1]
+    newest = venv.NEWEST if name in OF_INSTALLED_ROS else venv.SUPPORTED[1]
     minors = range(venv.SUPPORTED[0][1], newest[1] + 1)
     processors = ["x86_64"] if name in OF_WHEELS else list(OLDEST_GLIBC)
     return [Machine((3, minor), processor) for minor in minors for processor in processors]

@@ -11,7 +11,9 @@ from typing import Dict, List, Optional, Tuple
 from . import console
 
 PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004,
-         "read-only primary": 30011, "read-only secondary": 30012, "read-only real-time": 30013, "control": 30099}
+         "read-only primary": 30011, "read-only secondary": 30012, "read-only real-time": 30013, "interpreter": 30020,
+         "control": 30099, "MODBUS": 502}
+FIRST_UNPRIVILEGED = 1024
 _LISTEN = "0A"
 
 
@@ -32,6 +34,8 @@ def in_use(address: str, ports: "List[int]") -> List[int]:
                 if error.errno == errno.EADDRNOTAVAIL:
                     raise console.Failure(f"--address {address}: no network interface of this machine has that address. "
                                           "Loopback addresses are 127.0.0.1, 127.0.0.2 and so on.") from None
+                if error.errno == errno.EACCES and port < FIRST_UNPRIVILEGED:
+                    continue  # the simulator starts without this server
                 if error.errno != errno.EADDRINUSE:
                     raise console.Failure(f"port {port} of {address} cannot be opened: {error.strerror}") from None
                 found.append(port)

@@ -7,7 +7,7 @@
     # all programs have ended here, also after an exception or Ctrl-C
 
 Each program runs in its own session: Ctrl-C does not reach it directly, so that programs are stopped in order, and a signal
-reaches its children too. Its output is written to <log_folder>/<name>.log.
+reaches its children too. Its output is written to <log_folder>/<name>.log, ROS's logs to <log_folder>/ros, unless ROS_LOG_DIR is set.
 """
 
 import contextlib
@@ -106,6 +106,10 @@ class Programs:
             for number, handler in self._handlers.items():
                 signal.signal(number, handler)
 
+    def _environment(self, env: Mapping[str, str]) -> Dict[str, str]:
+        """Keeps the logs of simulated robots apart from those of the user's robots, of which ROS's log folder has the last stops."""
+        return {"ROS_LOG_DIR": str(self._folder.absolute() / "ros"), **env}
+
     def start(self, name: str, command: Sequence[str], env: Optional[Mapping[str, str]] = None,
               cwd: Optional[pathlib.Path] = None) -> Program:
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -113,8 +117,8 @@ class Programs:
         try:
             with log.open("wb") as output:
                 process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=output,
-                                           stderr=subprocess.STDOUT, env=None if env is None else dict(env), cwd=cwd,
-                                           start_new_session=True)
+                                           stderr=subprocess.STDOUT, env=self._environment(os.environ if env is None else env),
+                                           cwd=cwd, start_new_session=True)
         except OSError as error:
             raise Failure(f"{name} cannot be started: {error}. Command: {' '.join(map(str, command))}") from error
         program = Program(name, process, log)
@@ -124,7 +128,7 @@ class Programs:
     def run(self, command: Sequence[str], env: Mapping[str, str], limit: float, how: Sequence[Tuple[int, float]] = GENTLY) -> int:
         """Runs a command in the foreground and returns its exit code. Raises Failure at `limit`, s, or if a program exits; the command
         is stopped with the signals of `how` then."""
-        process = subprocess.Popen(command, env=dict(env), stdin=subprocess.DEVNULL, start_new_session=True)
+        process = subprocess.Popen(command, env=self._environment(env), stdin=subprocess.DEVNULL, start_new_session=True)
         deadline = time.monotonic() + limit
         try:
             while process.poll() is None:

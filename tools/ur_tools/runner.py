@@ -13,16 +13,20 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Set
 
 from . import isolation
-from .environment import run_environment
+from .environment import fastdds_profile, run_environment
 from .layout import ROOT, SANITIZERS, Layout
 from .processes import end_group
-from .stall_watch import REPEATS, StallWatch, failure
+from .stall_watch import REPEATS, SANITIZER_STATUS, StallWatch, failure
 
 BACKGROUND_NICENESS = 10  # of background tests: they get about a tenth of a core that other tests use all the time
 LOWEST_PRIORITY = 19
 TOOLS = pathlib.Path(__file__).resolve().parents[1]
 SANITIZED_PATIENCE = 4.0  # programs with a sanitizer are slower by about this factor
 SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half speed, so that its cycles are not late
+LEAVING_LIMIT = 5.0  # s, in which the processes of a test have to end after it
+# Failures of a program besides those of its cases.
+NO_REPORT, AFTER_LAST_CASE, NO_CASE, LEFT_BEHIND = "", "failed after its last case", "ran no case", "left processes behind"
+OF_THE_PROGRAM = {NO_REPORT, AFTER_LAST_CASE, NO_CASE, LEFT_BEHIND}
 STALLED = re.compile(r"^failed while the host stalled for .*$", re.M)  # stall_watch.failure()
 
 
@@ -79,6 +83,13 @@ class Result:
     processor_seconds: float  # of all its processes
     output: str
     repeats: List[str] = field(default_factory=list)  # lines about tests that failed while the host stalled, and were repeated
+    in_time: bool = True
+    status: int = 0  # of the process, as Popen.returncode
+
+    @property
+    def has_failed_assertions(self) -> bool:
+        """Whether a program of GoogleTest has reported failed cases, and nothing else has failed: no crash, no report of a sanitizer."""
+        return self.in_time and self.status == 1 and bool(self.cases.failures) and not OF_THE_PROGRAM & set(self.cases.failures)
 
 
 def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
@@ -86,7 +97,7 @@ def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
     try:
         tree = xml.parse(report).getroot()
     except (OSError, xml.ParseError):
-        return Cases(1, []) if succeeded else Cases(0, [""])
+        return Cases(1, []) if succeeded else Cases(0, [NO_REPORT])
     found = Cases(0, [])
     cases = {f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}": case for case in tree.iter("testcase")}
     for name, case in cases.items():  # the last attempt of each
@@ -98,23 +109,26 @@ def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
         elif case.get("status") != "notrun":
             found.passed += 1
     if not succeeded and not found.failures:
-        found.failures.append("failed after its last case")
+        found.failures.append(AFTER_LAST_CASE)
+    if not (found.passed or found.failures or found.skipped):
+        found.failures.append(NO_CASE)
     return found
 
 
-def _report_of(test: Test, base: pathlib.Path) -> pathlib.Path:
-    """Returns the path of the report: the one in the test's own command, otherwise `base` with the suffix .xml."""
-    for part in test.command:
-        if part.startswith("--gtest_output=xml:"):
-            return pathlib.Path(part.split(":", 1)[1])
-    return base.with_suffix(".xml")
+def _command(test: Test, report: pathlib.Path, limit: float) -> List[str]:
+    """Returns the command of the test with this report. pytest shows what it is doing at half of the limit, s."""
+    if test.is_pytest:
+        return [*test.command, f"--junitxml={report}", "-o", f"faulthandler_timeout={limit / 2.0:g}"]
+    output = f"--gtest_output=xml:{report}"
+    return [output if part.startswith("--gtest_output=") else part for part in test.command]
 
 
 def _sanitizer_environment() -> Dict[str, str]:
     suppressions = ROOT / "tools" / "sanitizers" / "thread.txt"
-    return {"ASAN_OPTIONS": "detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
-            "UBSAN_OPTIONS": "print_stacktrace=1",
-            "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
+    status = f"exitcode={SANITIZER_STATUS}"
+    return {"ASAN_OPTIONS": f"{status}:detect_leaks=0:strict_string_checks=1:detect_stack_use_after_return=1",
+            "UBSAN_OPTIONS": f"{status}:print_stacktrace=1",
+            "TSAN_OPTIONS": f"{status}:halt_on_error=1:second_deadlock_stack=1:suppressions={suppressions}"}
 
 
 def _wait(process: "subprocess.Popen[bytes]", limit: float) -> bool:
@@ -164,8 +178,7 @@ class Runner:
 
         Tests that start before `thorough_until`, on the monotonic clock, are thorough."""
         self._folder, self._limit, self._thorough_until = folder, limit, thorough_until
-        self._env = run_environment(layout)
-        self._env.update(_sanitizer_environment())
+        self._env = {**run_environment(layout), **fastdds_profile(layout), **_sanitizer_environment()}
         self._patience = 1.0
         if layout.variant in SANITIZERS:
             self._patience = SANITIZED_PATIENCE
@@ -177,7 +190,6 @@ class Runner:
         self._env["PYTHONPATH"] = os.pathsep.join([self._env["PYTHONPATH"], str(TOOLS)])  # for host_stalls.py
         self._env["PYTHONPYCACHEPREFIX"] = str(_bytecode_folder(layout))
         self._env["UR_LAYOUT"] = f"{layout.ros}:{layout.variant}"
-        self._env[isolation.MARK] = str(os.getpid())
         self._watch = StallWatch()
         self._lock = threading.Lock()
         self._count = 0
@@ -198,7 +210,8 @@ class Runner:
             result = self._run_once(test)
             if result is None:
                 return None
-            stall = 0.0 if test.is_pytest or not result.cases.failures else self._watch.longest_since(begin)
+            may_be_repeated = result.has_failed_assertions and not test.is_pytest  # pytest repeats cases itself
+            stall = self._watch.longest_since(begin) if may_be_repeated else 0.0
             if stall == 0.0 or len(repeats) == REPEATS:
                 return replace(result, repeats=[*repeats, *result.repeats])
             repeats.append(failure(stall, test.name))
@@ -208,20 +221,42 @@ class Runner:
             if self._cancelled:
                 return None
             self._count += 1
+            mark = f"{os.getpid()}:{self._count}"
             base = self._folder / f"{self._count:04d}-{re.sub(r'[^A-Za-z0-9_.]+', '-', test.name)[:80]}"
         with isolation.Domain() as domain:
-            return self._run(test, base, domain)
+            env = {**self._env, **test.env, isolation.MARK: mark}
+            domain.isolate(env)
+            return self._run(test, base, env)
 
-    def _run(self, test: Test, base: pathlib.Path, domain: isolation.Domain) -> Result:
-        report, log = _report_of(test, base), base.with_suffix(".log")
-        if report.exists():
-            report.unlink()  # from an earlier run
-        env = {**self._env, **domain.environment(), **test.env, "GTEST_OUTPUT": f"xml:{report}", "GTEST_COLOR": "no"}
+    def _run(self, test: Test, base: pathlib.Path, env: Dict[str, str]) -> Result:
+        report, log = base.with_suffix(".xml"), base.with_suffix(".log")
+        env.update(GTEST_OUTPUT=f"xml:{report}", GTEST_COLOR="no")
         if time.monotonic() < self._thorough_until:
             env["UR_TEST_THOROUGH"] = "1"
-        command = test.command + ([f"--junitxml={report}"] if test.is_pytest else [])
         limit = self._limit or self._patience * test.limit
         start = time.monotonic()
+        process = self._start(test, _command(test, report, limit), env, log)
+        in_time = _wait(process, limit)
+        processor_seconds = _processor_seconds(process.pid)
+        seconds = time.monotonic() - start
+        left = self._left_behind(env[isolation.MARK]) if in_time else []
+        end_group(process)
+        if left or not in_time:
+            isolation.kill(lambda mark: mark == env[isolation.MARK])
+        with self._lock:
+            self._running.discard(process)
+        cases = read_cases(report, process.returncode == 0 and in_time)
+        text = log.read_text(errors="replace") + "".join(f"\nleft behind: {command}\n" for command in left)
+        if left:
+            cases.failures.append(LEFT_BEHIND)
+        if not in_time:
+            text += f"\nstopped at its time limit of {limit:g} s\n"
+        elif process.returncode < 0:
+            text += f"\nended by signal {-process.returncode}\n"
+        return Result(test, cases, seconds, processor_seconds, text + f"(log: {log.relative_to(ROOT)})\n",
+                      STALLED.findall(text) if test.is_pytest else [], in_time, process.returncode)
+
+    def _start(self, test: Test, command: List[str], env: Dict[str, str], log: pathlib.Path) -> "subprocess.Popen[bytes]":
         with log.open("wb") as output:
             process = subprocess.Popen(command, cwd=test.folder, env=env, stdin=subprocess.DEVNULL, stdout=output,
                                        stderr=subprocess.STDOUT, start_new_session=True)
@@ -229,19 +264,11 @@ class Runner:
             _lower_priority(process.pid)
         with self._lock:
             self._running.add(process)
-        in_time = _wait(process, limit)
-        processor_seconds = _processor_seconds(process.pid)
-        end_group(process)
-        with self._lock:
-            self._running.discard(process)
-        cases = read_cases(report, process.returncode == 0 and in_time)
-        text = log.read_text(errors="replace")
-        if not in_time:
-            text += f"\nstopped at its time limit of {limit:g} s\n"
-        elif process.returncode < 0:
-            text += f"\nended by signal {-process.returncode}\n"
-        return Result(test, cases, time.monotonic() - start, processor_seconds,
-                      text + f"(log: {log.relative_to(ROOT)})\n", STALLED.findall(text) if test.is_pytest else [])
+        return process
+
+    def _left_behind(self, mark: str) -> List[str]:
+        """Returns the commands of the processes that a test has left, as far as they do not end by themselves."""
+        return isolation.left_behind(mark, 0.0 if self._cancelled else self._patience * LEAVING_LIMIT)
 
     def cancel(self) -> None:
         """Stops the running tests; later ones are not started."""

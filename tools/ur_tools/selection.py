@@ -4,11 +4,10 @@ import ast
 import difflib
 import pathlib
 import re
-import subprocess
 from dataclasses import dataclass, field
 from typing import Callable, Dict, Iterable, List, Optional, Set
 
-from . import console
+from . import console, docs, git
 from .layout import ROOT
 from .packages import Package
 
@@ -19,7 +18,10 @@ _FUZZ_REPLAY = re.compile(r"\badd_fuzz_replay\((\w+)")
 _CPP = (".cpp", ".hpp", ".h", ".c")
 # A change below these folders affects all packages.
 _ALL_PACKAGES = ("wheels/", "tools/cmake/")
-_NO_TESTS = ("LICENSE", ".")
+_DOCUMENTS = (".md", ".rst", ".cff")
+# Files and folders at the top whose contents only tests and the checks of the sources read.
+_ONLY_READ = (".", "Dockerfile", "LICENSE", "compose.", "mypy", "ruff.toml")
+_BUILDS_SITE = "docs.build("
 # Folders that belong to a module of ur_tools.
 _FOLDERS_OF_MODULES = {"bench/": "bench", "chaos/": "chaos", "demo/": "demo",
                        "compare_recording/": "compare_recording",
@@ -131,24 +133,20 @@ def _unknown(word: str, known: List[Source], packages: Iterable[str]) -> str:
 # --- By change ------------------------------------------------------------------------------------------------------------
 
 
-def _git(*arguments: str, root: pathlib.Path) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(["git", *arguments], cwd=root, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-
-
 def default_base(root: pathlib.Path = ROOT) -> str:
-    found = _git("rev-parse", "--verify", "--quiet", "origin/main^{commit}", root=root)
+    found = git.run("rev-parse", "--verify", "--quiet", "origin/main^{commit}", root=root)
     return "origin/main" if found.returncode == 0 else "HEAD"
 
 
 def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
     """Returns the files changed since the merge base of HEAD and `base`, including uncommitted and new ones."""
-    common = _git("merge-base", base, "HEAD", root=root)
+    common = git.run("merge-base", base, "HEAD", root=root)
     if common.returncode != 0:
         raise console.Failure(f"--base {base}: git finds no commit that it shares with HEAD. {common.stderr.strip()}".rstrip())
     found: Set[str] = set()
     for arguments in (("diff", "--name-only", "--no-renames", "-z", common.stdout.strip()),
                       ("ls-files", "--others", "--exclude-standard", "-z")):
-        result = _git(*arguments, root=root)
+        result = git.run(*arguments, root=root)
         if result.returncode != 0:
             raise console.Failure(f"git {arguments[0]} failed: {result.stderr.strip()}")
         found.update(name for name in result.stdout.split("\0") if name)
@@ -158,7 +156,7 @@ def changed_files(base: str, root: pathlib.Path = ROOT) -> List[str]:
 def _imports(path: pathlib.Path) -> Set[str]:
     """Returns the modules of ur_tools that a Python file imports or runs."""
     text = path.read_text()
-    found = set(re.findall(r"ur_tools\.(\w+)", text))
+    found = set(re.findall(r"""ur_tools(?:\.|" / ")(\w+)""", text))
     if re.search(r"""ROOT / ["']ur["']""", text):
         found.add("main")
     for node in ast.walk(ast.parse(text)):
@@ -186,8 +184,10 @@ class Affected:
         folder = self._folders.get(name.split("/")[0])
         if name.startswith(_ALL_PACKAGES):
             self.everything = True
-        elif name.endswith(".md"):
+        elif name.endswith(_DOCUMENTS):
             self._add_document(name)
+        elif name.startswith("docs/site/"):
+            self._add_mentions(_BUILDS_SITE)
         elif folder:
             self._add_of_package(folder, name)
         elif name.startswith("tools/test/"):
@@ -201,7 +201,9 @@ class Affected:
             self._add_mentions(f'"{name.split("/")[0]}"')
         elif name.startswith("tools/"):
             self._add_mentions(pathlib.PurePath(name).stem)
-        elif not name.startswith(_NO_TESTS) and not name.endswith(".png"):
+        elif name.startswith(_ONLY_READ):
+            self._add_mentions(f'"{name.split("/")[0]}"')
+        elif not name.endswith(".png"):
             self.everything = True
 
     def _dependents(self, name: str) -> Set[str]:
@@ -232,9 +234,10 @@ class Affected:
         if len(path.parts) > 3:  # of a folder that tests read as a whole
             self._add_mentions(f'"{path.parts[-2]}"')
         self._add_mentions(f'ROOT / "{path.name}"' if len(path.parts) == 1 else f'"{path.name}"')
-        if path.parts[0] == "docs":
-            self._add_mentions('glob("docs/')
-            self._add_mentions("docs.build(")
+        is_in_docs = path.parts[0] == "docs"
+        self._add_mentions('glob("docs/' if is_in_docs else f'ROOT.glob("{"*/" * (len(path.parts) - 1)}*{path.suffix}"')
+        if is_in_docs or name in ("README.md", *docs.OTHER_PAGES):
+            self._add_mentions(_BUILDS_SITE)
 
     def _add_module(self, module: str) -> None:
         graph = {path.stem: _imports(path) for path in (self._root / "tools" / "ur_tools").glob("*.py")}

@@ -11,6 +11,9 @@ import time
 from typing import List, Tuple
 
 PERIOD = 0.005  # s
+SANITIZER_STATUS = 66  # of a program after the report of a sanitizer
+# Statuses of a program that has crashed, as Popen.returncode: no stall is the reason.
+CRASHED = (SANITIZER_STATUS, -signal.SIGABRT, -signal.SIGBUS, -signal.SIGFPE, -signal.SIGILL, -signal.SIGSEGV, -signal.SIGTRAP)
 REPEATS = 3  # of a test that failed while the host stalled, at most
 LEAST_STALL = 0.03  # s; with shorter ones, the driver and the tests must work
 

@@ -4,12 +4,13 @@ import os
 import pathlib
 import shutil
 import subprocess
-from typing import List
+from typing import Dict, List, Tuple
 
 from . import console
 from .layout import ROOT
 
 LIST = ROOT / "tools" / "system_packages.txt"
+SECONDS = 60.0  # to download and install them
 
 
 def needed(file: pathlib.Path = LIST) -> List[str]:
@@ -38,6 +39,18 @@ def absent() -> List[str]:
     return missing(needed()) if shutil.which("dpkg-query") else []
 
 
+def _run(command: List[str], env: Dict[str, str]) -> Tuple[int, str]:
+    """Shows what a program prints while it runs. Returns its exit status and output."""
+    status, lines = console.Status(), []
+    with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            lines.append(line)
+            status.show(line.rstrip())
+    status.clear()
+    return process.returncode, "".join(lines)
+
+
 def ensure() -> None:
     if not shutil.which("dpkg-query"):
         console.line("    this machine has no dpkg: the equivalents of these Debian packages must be installed: " + " ".join(needed()))
@@ -55,8 +68,7 @@ def ensure() -> None:
     if prefix:
         prefix = prefix + ["env", "DEBIAN_FRONTEND=noninteractive"]
     for part in ("apt-get update", command):
-        result = subprocess.run(prefix + part.split(), env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                universal_newlines=True)
-    if result.returncode != 0:
-        raise console.Failure(f"`{command}` failed:\n{console.tail(result.stdout, 15)}\n"
+        returncode, output = _run(prefix + part.split(), env)
+    if returncode != 0:
+        raise console.Failure(f"`{command}` failed:\n{console.tail(output, 15)}\n"
                               "Check the network connection and the package sources of this machine.")

@@ -2,7 +2,6 @@
 
 import ast
 import json
-import os
 import pathlib
 import re
 import signal
@@ -12,12 +11,12 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import Dict, List
 
-from . import boilerplate, browser, console, isolation, lint, selection, summary
+from . import browser, console, isolation, lint, machine, selection, summary
 from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover
-from .runner import Result, Runner, Test
+from .runner import OF_THE_PROGRAM, Result, Runner, Test
 from .schedule import Job, Schedule, Times
 from .summary import case_name
 
@@ -29,6 +28,8 @@ BACKGROUND_LABEL = "background"  # of a CTest test: the same as BACKGROUND
 LAST_LABEL = "last"  # of a CTest test: a background test that starts when no other test waits
 THOROUGH_PERIOD = 3600.0  # s, from the start of the build: on a slow host, fuzz replays that start later are short
 SHOWN_LINES = 60  # of a failed test's output
+MAX_DIAGNOSED = 5  # failed tests that are repeated alone
+DIAGNOSIS_LIMIT = 60.0  # s, or twice the duration of the test, for a repetition
 FAILS_ALONE, PASSES_ALONE = "fails alone too", "passes alone: depends on load or on other tests"
 
 
@@ -129,7 +130,7 @@ def _job(test: Test, times: Times) -> Job:
 
 def _run_all(options: Options, runner: Runner, tests: List[Test]) -> List[Result]:
     times = Times(options.layout.durations)
-    schedule = Schedule([_job(test, times) for test in tests], len(os.sched_getaffinity(0)), options.jobs)
+    schedule = Schedule([_job(test, times) for test in tests], machine.cores(), options.jobs)
     results: List[Result] = []
     status = console.Status()
     with ThreadPoolExecutor(schedule.most) as pool:
@@ -179,36 +180,48 @@ def _only_failed_cases(result: Result) -> Test:
 
 
 def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
-    """Repeats failed tests alone. Returns, for each failed case, whether it fails then; the results remain as they are."""
+    """Repeats the first failed tests alone. Returns, for each failed case, whether it fails then; the results remain as they are."""
     verdicts: Dict[str, str] = {}
-    for result in (result for result in results if result.cases.failures):
+    failed = [result for result in results if result.cases.failures and result.in_time]
+    for result in failed[:MAX_DIAGNOSED]:
         console.line(f"repeating alone, as a diagnosis: {result.test.name}")
-        alone = runner.run(_only_failed_cases(result))
+        alone = runner.run(replace(_only_failed_cases(result), limit=min(result.test.limit, max(DIAGNOSIS_LIMIT, 2.0 * result.seconds))))
         if alone is None:
             break
         for case in result.cases.failures:
-            verdicts[case_name(result, case)] = FAILS_ALONE if case in alone.cases.failures else PASSES_ALONE
+            fails = {case, *OF_THE_PROGRAM} & set(alone.cases.failures)
+            verdicts[case_name(result, case)] = FAILS_ALONE if fails else PASSES_ALONE
+    if len(failed) > MAX_DIAGNOSED:
+        console.line(f"{len(failed) - MAX_DIAGNOSED} more failed tests are not repeated")
     return verdicts
 
 
 def run(options: Options) -> int:
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's "&" ignores it, and tests would inherit that
-    thorough_until = time.monotonic() + THOROUGH_PERIOD if options.thorough else 0.0
-    chosen = _select(options)
+    return _run_selected(options, _select(options))
+
+
+def _build(options: Options, chosen: selection.Selection) -> Dict[str, Package]:
     if chosen.packages == [] and options.changed:
         building.setup(options.layout)
-        packages: Dict[str, Package] = {}
-    else:
-        packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
+        return {}
+    packages = building.build(building.Options(options.layout, chosen.packages, True, options.jobs))
     if "ur_ros_rtde_viewer" in packages:
         building.setup_viewer(options.layout)
-    return _run_selected(options, chosen, packages, thorough_until)
+    return packages
 
 
-def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[str, Package], thorough_until: float) -> int:
-    start = time.monotonic()
-    with Lock("test"):
+def _runner(options: Options, thorough_until: float) -> Runner:
+    folder = isolation.fresh_folder(options.layout.base / "test")
+    return Runner(options.layout, folder, options.timeout, thorough_until)
+
+
+def _run_selected(options: Options, chosen: selection.Selection) -> int:
+    with Lock("build"):  # until the end of the tests: a build would change their programs
+        thorough_until = time.monotonic() + THOROUGH_PERIOD if options.thorough else 0.0
+        packages = _build(options, chosen)
+        start = time.monotonic()
         tests = _collect(options, packages, chosen)
         if options.names and not tests:
             raise console.Failure(f"no test has {' or '.join(options.names)} in its name")
@@ -220,12 +233,9 @@ def _run_selected(options: Options, chosen: selection.Selection, packages: Dict[
             if not check.ok:
                 console.line(f"FAILED  {check.name}\n{check.text}")
         console.step(f"Running {len(tests)} test{'s' * (len(tests) != 1)}")
-        folder = isolation.fresh_folder(options.layout.base / "test")
-        with isolation.CleanUp(), Runner(options.layout, folder, options.timeout, thorough_until) as runner:
+        with isolation.CleanUp(), _runner(options, thorough_until) as runner:
             results = _run_all(options, runner, tests)
             if 0.0 < thorough_until < time.monotonic():
                 console.line(f"Fuzz replays that started after {THOROUGH_PERIOD / 60.0:.0f} min were short.")
             verdicts = _diagnose(runner, results) if options.repeat == 1 else {}
-    if not (options.names or options.changed):
-        console.line("\n" + boilerplate.table())
     return summary.report(results, checks, verdicts, time.monotonic() - start)

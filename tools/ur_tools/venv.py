@@ -8,12 +8,13 @@ import shutil
 import subprocess
 import sys
 import time
-from typing import Dict, Iterable, List, Optional, Sequence
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 from . import console, pins
 from .layout import ROOT, SUPPORTED_DISTRIBUTIONS, Layout
 
-SUPPORTED = ((3, 10), (3, 12))
+SUPPORTED = ((3, 10), (3, 12))  # by the wheels
+NEWEST = (3, 14)  # of a supported ROS
 STAMP = "ur_stamp.txt"
 VIEWER_STAMP = "ur_viewer_stamp.txt"
 IDENTITY = "ur_identity.txt"
@@ -42,7 +43,7 @@ def _candidates() -> Iterable[str]:
     yield "/usr/bin/python3"
 
 
-def _why_unusable(python: str) -> Optional[str]:
+def _why_unusable(python: str, newest: Tuple[int, int]) -> Optional[str]:
     try:
         result = subprocess.run([python, "-c", _PROBE], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=30,
                                 universal_newlines=True)
@@ -52,20 +53,20 @@ def _why_unusable(python: str) -> Optional[str]:
         return "has no venv and pip (python3-venv)" if "ensurepip" in result.stderr else console.tail(result.stderr, 1)
     version, header = result.stdout.split()
     major_minor = tuple(int(part) for part in version.split("."))
-    if not SUPPORTED[0] <= major_minor <= SUPPORTED[1]:
+    if not SUPPORTED[0] <= major_minor <= newest:
         return f"is {version}"
     return None if header == "1" else "has no headers (python3-dev)"
 
 
-def find_python() -> str:
-    """Returns a Python 3.10 to 3.12 with venv, pip and headers. ROS 2 wheels exist for these versions."""
+def find_python(newest: Tuple[int, int] = SUPPORTED[1], user: str = "The ROS 2 wheels need") -> str:
+    """Returns a Python from 3.10 to the newest that its user supports, with venv, pip and headers."""
     rejected: List[str] = []
     for python in _candidates():
-        why = _why_unusable(python)
+        why = _why_unusable(python, newest)
         if why is None:
             return os.path.realpath(python)
         rejected.append(f"    {python} {why}")
-    raise console.Failure("The ROS 2 wheels need Python 3.10, 3.11 or 3.12. Found:\n" + "\n".join(dict.fromkeys(rejected)) +
+    raise console.Failure(f"{user} Python 3.10 to 3.{newest[1]}. Found:\n" + "\n".join(dict.fromkeys(rejected)) +
                           "\nInstall one with its venv module and headers, or select it: UR_PYTHON=/path/to/python3.11 ./ur ...")
 
 
@@ -81,6 +82,11 @@ def python_of_ros(layout: Layout) -> str:
         raise console.Failure(f"{layout.title}: {python} cannot be used: {console.tail(result.stdout, 1)}\nIt must be the Python of that "
                               "installation, with rclpy and venv (python3-venv). Select it: UR_PYTHON=/path/to/python3 ./ur ...")
     return python
+
+
+def python_for(layout: Layout) -> str:
+    """Returns the Python for the virtual environment."""
+    return python_of_ros(layout) if layout.is_installed else find_python()
 
 
 def _stamp(layout: Layout, requirements: Sequence[pathlib.Path]) -> str:
@@ -170,9 +176,13 @@ def _count(requirements: pathlib.Path) -> int:
     return len({pin.name for pin in pins.read(requirements)})
 
 
+def _has(layout: Layout, stamp: str, requirements: Sequence[pathlib.Path]) -> bool:
+    file = layout.venv / stamp
+    return file.is_file() and file.read_text() == _stamp(layout, requirements)
+
+
 def is_current(layout: Layout) -> bool:
-    stamp_file = layout.venv / STAMP
-    return stamp_file.is_file() and stamp_file.read_text() == _stamp(layout, layout.requirements)
+    return _has(layout, STAMP, layout.requirements)
 
 
 def identity(layout: Layout) -> str:
@@ -186,7 +196,7 @@ def ensure(layout: Layout) -> None:
         return
     start = time.monotonic()
     if not _is_usable(layout):
-        python = python_of_ros(layout) if layout.is_installed else find_python()
+        python = python_for(layout)
         console.step(f"Creating a virtual environment in {layout.venv.relative_to(ROOT)} with {python}")
         layout.base.mkdir(parents=True, exist_ok=True)
         options = ["--system-site-packages"] if layout.is_installed else []
@@ -202,11 +212,15 @@ def ensure(layout: Layout) -> None:
     console.line(f"    done in {time.monotonic() - start:.0f} s")
 
 
+def has_viewer(layout: Layout) -> bool:
+    """Returns whether the environment has the packages of the viewer."""
+    return _has(layout, VIEWER_STAMP, layout.viewer_requirements)
+
+
 def ensure_viewer(layout: Layout) -> None:
     """Installs the packages of the viewer into the existing environment."""
-    stamp_file, stamp = layout.venv / VIEWER_STAMP, _stamp(layout, layout.viewer_requirements)
-    if stamp_file.is_file() and stamp_file.read_text() == stamp:
+    if has_viewer(layout):
         return
     console.step("Installing the page server of the viewer (10 MB)")
     _pip_install(layout, layout.viewer_requirements)
-    stamp_file.write_text(stamp)
+    (layout.venv / VIEWER_STAMP).write_text(_stamp(layout, layout.viewer_requirements))

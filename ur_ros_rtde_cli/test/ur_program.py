@@ -11,12 +11,14 @@ import termios
 
 import pytest
 import yaml
+from own_domain import Domain
 from programs import Process, find_program
 from robot_fixtures import simulated_robot
 from support import HOME, TIMEOUT_FACTOR, wait_for
 
 DISCOVERY = str(8.0 * TIMEOUT_FACTOR)  # s, time limit for the discovery of all actions
-EMPTY_DOMAIN = "102"  # an unused domain: tests use domains below 102
+_EMPTY = Domain()  # without nodes
+EMPTY_DOMAIN = str(_EMPTY.number)
 
 
 @pytest.fixture(scope="module")

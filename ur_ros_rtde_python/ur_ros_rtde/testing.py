@@ -34,7 +34,10 @@ from .errors import CommandFailed, Rejected
 from .robot import Robot
 
 HOME = (0.0, -1.57, 1.57, -1.57, -1.57, 0.0)  # rad
-_FIRST_PORT, _LAST_DOMAIN = 32768, 100  # of ROS's domain_coordinator: the owner of a domain has bound its port
+_FIRST_PORT, _LAST_DOMAIN = 32768, 100  # of ROS's domain_coordinator: the owner of a domain has bound its TCP port
+_RTPS_PORT, _RTPS_PORTS = 7400, 250  # the first UDP port of domain 0, and the number of ports of each domain
+# With these variables of the user, nodes find others on other hosts.
+_PEERS = ("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS2_EASY_MODE", "CYCLONEDDS_URI")
 _READY_TIMEOUT = 60.0  # s; the driver takes 0.3 s on an idle machine
 _EXIT_TIMEOUT = 15.0  # s
 # A controller unlocks a protective stop after 5 s.
@@ -101,25 +104,36 @@ class Driver:
         self.stop()
 
 
+def _has_nodes(domain: int) -> bool:
+    """Returns whether a node of the domain runs on this host."""
+    first = _RTPS_PORT + _RTPS_PORTS * domain
+    sockets = [line.split()[1] for file in pathlib.Path("/proc/net").glob("udp*") for line in file.read_text().splitlines()[1:]]
+    return any(first <= int(local.rpartition(":")[2], 16) < first + _RTPS_PORTS for local in sockets)
+
+
 def _reserve_domain(reserved: contextlib.ExitStack) -> int:
-    """Returns a ROS domain that no other test on this machine uses until `reserved` is closed."""
-    for number in range(1, _LAST_DOMAIN + 1):
+    """Returns a ROS domain that no other test and no running node on this host uses until `reserved` is closed."""
+    for number in range(_LAST_DOMAIN, 0, -1):
         reservation = reserved.enter_context(socket.socket())
         with contextlib.suppress(OSError):
             reservation.bind(("", _FIRST_PORT + number))
-            return number
-    raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use by other tests")
+            if not _has_nodes(number):
+                return number
+    raise RuntimeError(f"all ROS domains from 1 to {_LAST_DOMAIN} are in use")
 
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
-    """A ROS domain of its own for this process and its children, which other hosts do not see: a goal of a test reaches no robot."""
+    """A ROS domain of its own for this process and its children, in which no node runs at its begin, and which other hosts do not see: a
+    goal of a test reaches no other robot, unless a driver is started in the domain in the meantime."""
     with contextlib.ExitStack() as reserved, pytest.MonkeyPatch.context() as environment:
         number = _reserve_domain(reserved)
         environment.setenv("ROS_DOMAIN_ID", str(number))
         environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         if os.environ.get("ROS_DISTRO") == "humble":  # does not know it
             environment.setenv("ROS_LOCALHOST_ONLY", "1")
+        for name in _PEERS:
+            environment.delenv(name, raising=False)
         yield number
 
 

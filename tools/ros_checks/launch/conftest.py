@@ -1,14 +1,14 @@
-import os
 import pathlib
 import sys
 
 import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[3] / "rcl_cxx/test/support"))
 from ros2 import Launch, ready
+from ros_domain import reserve
 
-os.environ.setdefault("ROS_DOMAIN_ID", "87")
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+reserve()
 
 
 @pytest.fixture
