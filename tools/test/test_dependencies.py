@@ -82,7 +82,7 @@ def test_imported_python_modules_are_declared():
     missing = []
     for name in PACKAGES:
         local = {path.stem for path in files(name, "*.py")} | {path.parent.name for path in files(name, "__init__.py")}
-        local |= {path.stem for path in files("ur_ros_rtde_commands", "*.py") if "system" in path.parts} | {"stops"}
+        local |= {path.stem for path in files("ur_ros_rtde_commands", "*.py") if "system" in path.parts} | {"stops", "ros_domain"}
         for path in files(name, "*.py"):
             known = declared(name, ANY if is_test(path) else RUN)
             modules = set(imported(path)) - local - set(sys.stdlib_module_names)
