@@ -67,7 +67,7 @@ void isolate()
 {
   take_own_domain();
   for (const char * name :
-       {"ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS2_EASY_MODE"}) {
+       {"ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS2_EASY_MODE", "CYCLONEDDS_URI"}) {
     ::unsetenv(name);
   }
   ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);

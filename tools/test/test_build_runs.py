@@ -90,7 +90,7 @@ def test_builds_everything_once_in_a_path_with_spaces(layout, capsys):
     printed = capsys.readouterr().out
     assert printed.splitlines()[0].startswith(f"==> Builds {len(names)} packages, about ")
     assert all(f"finished {name}" in printed for name in names)
-    assert str(lock_file(layout)) in (layout.log / "open_files.txt").read_text()  # also if ./ur is killed meanwhile
+    assert str(lock_file(layout)) in (layout.log / "open_files.txt").read_text()  # even if ./ur is killed
     build.build(build.Options(layout))
     assert calls(layout) == [names]
     assert capsys.readouterr().out == ""

@@ -35,6 +35,7 @@ def test_the_files_of_a_repository_are_those_that_it_does_not_ignore(repository)
 def test_the_repository_of_another_user_has_the_same_files(repository, monkeypatch):
     monkeypatch.setenv("GIT_TEST_ASSUME_DIFFERENT_OWNER", "1")
     assert "dubious ownership" in subprocess.run(["git", "status"], cwd=repository, capture_output=True, text=True).stderr
+    assert git.run("ls-files", root=repository).returncode == 0
     assert names(repository) == [".gitignore", *SOURCES]
 
 

@@ -147,7 +147,7 @@ def test_a_run_kills_what_a_killed_run_has_left(tmp_path, monkeypatch):
     dead = subprocess.Popen(["true"])
     dead.wait()
     runs = {"dead": dead.pid, "living": os.getppid()}
-    left = {name: subprocess.Popen(["sleep", "60"], env={isolation.MARK: f"{run}:3"}) for name, run in runs.items()}
+    left = {name: subprocess.Popen(["sleep", "60"], env={isolation.MARK: f"{run}:0"}) for name, run in runs.items()}
     try:
         with isolation.CleanUp():
             assert left["dead"].wait(20.0) < 0 and left["living"].poll() is None

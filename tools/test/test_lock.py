@@ -74,8 +74,8 @@ def test_a_lock_lasts_as_long_as_a_program_that_inherits_it(tmp_path, monkeypatc
     """As colcon, which goes on when ./ur is killed."""
     code = HOLDER.format(path=sys.path, folder=str(tmp_path)).replace('print("holding"', """
     import subprocess
-    from ur_tools.lock import held
-    print(subprocess.Popen(["sleep", "60"], stdout=subprocess.DEVNULL, pass_fds=held()).pid""")
+    from ur_tools.lock import descriptors
+    print(subprocess.Popen(["sleep", "60"], stdout=subprocess.DEVNULL, pass_fds=descriptors()).pid""")
     first = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     heir = int(first.stdout.readline())
     first.kill()
@@ -105,6 +105,7 @@ def test_a_test_does_not_wait_for_the_run_that_it_belongs_to(tmp_path, monkeypat
 
 def test_no_build_can_change_the_programs_while_they_are_tested(tmp_path, monkeypatch):
     monkeypatch.setattr("ur_tools.layout.STATE", tmp_path)
+    monkeypatch.setattr(isolation, "_SHARED_MEMORY", tmp_path)
     locked = {}
 
     def during(what, result):

@@ -237,7 +237,7 @@ def _run_colcon(options: Options, packages: Dict[str, Package], outdated: List[s
     with output.open("w") as file:
         process = subprocess.Popen(command, cwd=layout.base, env=build_environment(layout, options.jobs), stdout=file,
                                    stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
-                                   pass_fds=tuple(lock.held()))  # colcon goes on if this process is killed
+                                   pass_fds=tuple(lock.descriptors()))  # colcon goes on if this process is killed
     times = _times(options)
     progress = Progress(layout, output, stamps, Forecast(times, _firsts(layout, outdated), tests), tests)
     try:
@@ -370,13 +370,14 @@ def build(options: Options) -> Dict[str, Package]:
         return packages
     with Lock("build"):
         packages = _chosen(options)
-        pending, stamps = _pending(options, packages)  # another ./ur may have built them while this one waited
+        pending, _ = _pending(options, packages)  # another ./ur may have built them while this one waited
         for name in pending.outdated:
             if is_foreign(options.layout.build / name, packages[name].folder):
                 shutil.rmtree(options.layout.build / name)
         if pending:
             console.step(pending.text(options))
         _setup(options.layout, pending)
+        pending, stamps = _pending(options, packages)  # in the environment that is there now
         if pending.outdated:
             _build(options, packages, pending, stamps)
     return packages

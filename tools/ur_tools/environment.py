@@ -27,7 +27,7 @@ def _path(*parts: object) -> str:
 
 
 def _base(layout: Layout) -> Dict[str, str]:
-    foreign = (*git.OF_A_REPOSITORY, *(OF_A_WORKSPACE if layout.is_installed else FOREIGN))
+    foreign = (*git.REPOSITORY_VARIABLES, *(OF_A_WORKSPACE if layout.is_installed else FOREIGN))
     env = {name: value for name, value in os.environ.items() if name not in foreign and not name.startswith(OF_TESTS)}
     env["VIRTUAL_ENV"] = str(layout.venv)
     env["PATH"] = _path(layout.venv / "bin", env.get("PATH", os.defpath))

@@ -9,7 +9,7 @@ from typing import Iterator, List
 from .layout import ROOT
 
 # Variables that name the repository of a git hook: a program that runs git elsewhere would change that one.
-OF_A_REPOSITORY = ("GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_COMMON_DIR", "GIT_CONFIG", "GIT_CONFIG_PARAMETERS", "GIT_DIR",
+REPOSITORY_VARIABLES = ("GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_COMMON_DIR", "GIT_CONFIG", "GIT_CONFIG_PARAMETERS", "GIT_DIR",
                    "GIT_GRAFT_FILE", "GIT_IMPLICIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_INTERNAL_SUPER_PREFIX", "GIT_NAMESPACE",
                    "GIT_NO_REPLACE_OBJECTS", "GIT_OBJECT_DIRECTORY", "GIT_PREFIX", "GIT_QUARANTINE_PATH", "GIT_REPLACE_REF_BASE",
                    "GIT_SHALLOW_FILE", "GIT_WORK_TREE")
@@ -18,11 +18,13 @@ _CACHES = ("__pycache__", ".pytest_cache")
 
 
 def run(*arguments: str, root: pathlib.Path = ROOT) -> "subprocess.CompletedProcess[str]":
-    """Returns the result of git in `root`. The status is 127 if git is not installed."""
+    """Returns the result of git in `root`, also if that belongs to another user (from git 2.38 on). The status is 127 if git is not
+    installed."""
     command = ["git", "-c", f"safe.directory={root}", *arguments]
-    env = {name: value for name, value in os.environ.items() if name not in OF_A_REPOSITORY}
+    env = {name: value for name, value in os.environ.items() if name not in REPOSITORY_VARIABLES}
     try:
-        return subprocess.run(command, cwd=root, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        return subprocess.run(command, cwd=root, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
+                              errors="surrogateescape")
     except FileNotFoundError:
         return subprocess.CompletedProcess(command, 127, "", "git is not installed")
 
@@ -39,7 +41,7 @@ def copy_files(target: pathlib.Path) -> None:
     for path in files():
         copy = target / path.relative_to(ROOT)
         copy.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path, copy)
+        shutil.copy(path, copy)
 
 
 def _walk(root: pathlib.Path) -> Iterator[pathlib.Path]:

@@ -10,11 +10,11 @@ import time
 from typing import Callable, Iterator, List, Set, Tuple
 
 from .layout import load
+from .lock import MARK
 
-MARK = "UR_TEST_RUN"  # environment variable of every process of a test: process id of the run, colon, number of the test
-_MARK = re.compile(rb"(?:^|\0)UR_TEST_RUN=(\d+:\d+)\0")
+_MARK = re.compile(rb"(?:^|\0)" + MARK.encode() + rb"=(\d+:\d+)\0")
 KILL_LIMIT = 5.0  # s, after which killed processes are no longer waited for
-POLL_INTERVAL = 0.02  # s
+POLL_INTERVAL, LONGEST_POLL_INTERVAL = 0.02, 0.3  # s; looking takes some milliseconds
 ros_domain = load("rcl_cxx/test/support/ros_domain.py")
 Domain = ros_domain.Domain
 _SHARED_MEMORY = pathlib.Path("/dev/shm")
@@ -85,12 +85,13 @@ def _command(pid: int) -> str:
 
 def left_behind(mark: str, limit: float) -> List[str]:
     """Returns the commands of the processes with this mark that do not end within `limit` s."""
-    deadline = time.monotonic() + limit
+    deadline, interval = time.monotonic() + limit, POLL_INTERVAL
     while True:
         left = [pid for pid, found in _marked() if found == mark]
         if not left or time.monotonic() > deadline:
             return [_command(pid) for pid in left]
-        time.sleep(POLL_INTERVAL)
+        time.sleep(interval)
+        interval = min(2.0 * interval, LONGEST_POLL_INTERVAL)
 
 
 def kill(is_stray: Callable[[str], bool]) -> None:

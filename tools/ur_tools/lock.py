@@ -8,9 +8,9 @@ import sys
 from typing import IO, Dict, Optional, Set
 
 from . import console
-from .isolation import MARK
 from .layout import STATE
 
+MARK = "UR_TEST_RUN"  # environment variable of every process of a test: process id of the run, colon, number of the test
 _NOT_WRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS)
 _held: Dict[pathlib.Path, IO[str]] = {}
 
@@ -27,7 +27,7 @@ def _fail_inside(holder: str) -> None:
                               "edited after the tests started?")
 
 
-def held() -> Set[int]:
+def descriptors() -> Set[int]:
     """Returns the descriptors of the locks of this process. A program that inherits them keeps the locks until it ends too."""
     return {file.fileno() for file in _held.values()}
 

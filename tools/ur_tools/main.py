@@ -133,18 +133,17 @@ def command_module(options: argparse.Namespace) -> int:
     os.execve(sys.executable, [sys.executable, "-m", f"ur_tools.{name}", *arguments], env)
 
 
-def _run_cli_from_sources(python: str, arguments: List[str]) -> None:
-    source = ROOT / "ur_ros_rtde_cli"
-    modules = os.pathsep.join(map(str, (source, ROOT / "ur_ros_rtde_description")))
-    env = {**os.environ, "PYTHONPATH": modules, "PYTHONDONTWRITEBYTECODE": "1"}
-    os.execve(python, [python, str(source / "scripts" / "ur"), *arguments], env)
+def _run_from_sources(package: str, program_name: str, arguments: List[str], python: str = sys.executable) -> None:
+    folders = (ROOT / name for name in (package, "ur_ros_rtde_cli", "ur_ros_rtde_description"))
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, folders)), "PYTHONDONTWRITEBYTECODE": "1"}
+    os.execve(python, [python, str(ROOT / package / "scripts" / program_name), *arguments], env)
 
 
 def command_cli(options: argparse.Namespace) -> int:
     """Runs `ur call …` of ur_ros_rtde_cli for `./ur call …`. Builds only if it is missing: the driver may be running."""
     arguments = [options.command, *_forwarded(options)]
     if options.command == "new" or any(argument in ("-h", "--help") for argument in arguments):
-        _run_cli_from_sources(sys.executable, arguments)
+        _run_from_sources("ur_ros_rtde_cli", "ur", arguments)
     layout = _layout(options)
     try:
         command = program(layout, "ur_ros_rtde_cli", "ur")
@@ -167,9 +166,7 @@ def command_view(options: argparse.Namespace) -> int:
     """Runs the viewer. Builds only if it is missing: the driver may be running."""
     arguments, layout = _forwarded(options), _layout(options)
     if any(argument in ("-h", "--help") for argument in arguments):
-        source = ROOT / "ur_ros_rtde_viewer"
-        env = {**os.environ, "PYTHONPATH": str(source), "PYTHONDONTWRITEBYTECODE": "1"}
-        os.execve(sys.executable, [sys.executable, str(source / "scripts" / "view"), *arguments], env)
+        _run_from_sources("ur_ros_rtde_viewer", "view", arguments)
     viewer.execute(layout, arguments, options.jobs)
     return 0  # not reached
 
@@ -213,7 +210,7 @@ def command_doctor(options: argparse.Namespace) -> int:
         return command_cli(options)
     if arguments:
         installed = layout.python  # has the modules that read calibrations
-        _run_cli_from_sources(str(installed) if installed.exists() else sys.executable, ["doctor", *arguments])
+        _run_from_sources("ur_ros_rtde_cli", "ur", ["doctor", *arguments], str(installed) if installed.exists() else sys.executable)
     return doctor.run(layout)
 
 

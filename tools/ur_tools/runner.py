@@ -26,7 +26,7 @@ SANITIZED_REAL_TIME_FACTOR = 0.5  # lets the simulated robot's time pass at half
 LEAVING_LIMIT = 5.0  # s, in which the processes of a test have to end after it
 # Failures of a program besides those of its cases.
 NO_REPORT, AFTER_LAST_CASE, NO_CASE, LEFT_BEHIND = "", "failed after its last case", "ran no case", "left processes behind"
-OF_THE_PROGRAM = {NO_REPORT, AFTER_LAST_CASE, NO_CASE, LEFT_BEHIND}
+PROGRAM_FAILURES = {NO_REPORT, AFTER_LAST_CASE, NO_CASE, LEFT_BEHIND}
 STALLED = re.compile(r"^failed while the host stalled for .*$", re.M)  # stall_watch.failure()
 
 
@@ -89,7 +89,7 @@ class Result:
     @property
     def has_failed_assertions(self) -> bool:
         """Whether a program of GoogleTest has reported failed cases, and nothing else has failed: no crash, no report of a sanitizer."""
-        return self.in_time and self.status == 1 and bool(self.cases.failures) and not OF_THE_PROGRAM & set(self.cases.failures)
+        return self.in_time and self.status == 1 and bool(self.cases.failures) and not PROGRAM_FAILURES & set(self.cases.failures)
 
 
 def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
@@ -108,10 +108,10 @@ def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
             found.skipped[name] = skipped.get("message", "").rpartition("\n")[2] or "no reason"  # GoogleTest's begins with its place
         elif case.get("status") != "notrun":
             found.passed += 1
-    if not succeeded and not found.failures:
-        found.failures.append(AFTER_LAST_CASE)
     if not (found.passed or found.failures or found.skipped):
         found.failures.append(NO_CASE)
+    elif not succeeded and not found.failures:
+        found.failures.append(AFTER_LAST_CASE)
     return found
 
 

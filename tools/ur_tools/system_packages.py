@@ -42,7 +42,8 @@ def absent() -> List[str]:
 def _run(command: List[str], env: Dict[str, str]) -> Tuple[int, str]:
     """Shows what a program prints while it runs. Returns its exit status and output."""
     status, lines = console.Status(), []
-    with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True) as process:
+    with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+                          errors="replace") as process:
         assert process.stdout is not None
         for line in process.stdout:
             lines.append(line)

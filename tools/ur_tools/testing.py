@@ -16,7 +16,7 @@ from . import build as building
 from .layout import ROOT, Layout
 from .lock import Lock
 from .packages import Package, discover
-from .runner import OF_THE_PROGRAM, Result, Runner, Test
+from .runner import PROGRAM_FAILURES, Result, Runner, Test
 from .schedule import Job, Schedule, Times
 from .summary import case_name
 
@@ -189,7 +189,7 @@ def _diagnose(runner: Runner, results: List[Result]) -> Dict[str, str]:
         if alone is None:
             break
         for case in result.cases.failures:
-            fails = {case, *OF_THE_PROGRAM} & set(alone.cases.failures)
+            fails = {case, *PROGRAM_FAILURES} & set(alone.cases.failures)
             verdicts[case_name(result, case)] = FAILS_ALONE if fails else PASSES_ALONE
     if len(failed) > MAX_DIAGNOSED:
         console.line(f"{len(failed) - MAX_DIAGNOSED} more failed tests are not repeated")

@@ -176,13 +176,13 @@ def _count(requirements: pathlib.Path) -> int:
     return len({pin.name for pin in pins.read(requirements)})
 
 
-def _has(layout: Layout, stamp: str, requirements: Sequence[pathlib.Path]) -> bool:
+def _has_stamp(layout: Layout, stamp: str, requirements: Sequence[pathlib.Path]) -> bool:
     file = layout.venv / stamp
     return file.is_file() and file.read_text() == _stamp(layout, requirements)
 
 
 def is_current(layout: Layout) -> bool:
-    return _has(layout, STAMP, layout.requirements)
+    return _has_stamp(layout, STAMP, layout.requirements)
 
 
 def identity(layout: Layout) -> str:
@@ -214,7 +214,7 @@ def ensure(layout: Layout) -> None:
 
 def has_viewer(layout: Layout) -> bool:
     """Returns whether the environment has the packages of the viewer."""
-    return _has(layout, VIEWER_STAMP, layout.viewer_requirements)
+    return _has_stamp(layout, VIEWER_STAMP, layout.viewer_requirements)
 
 
 def ensure_viewer(layout: Layout) -> None:

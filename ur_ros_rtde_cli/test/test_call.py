@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import pathlib
 import re
 import signal
@@ -166,6 +167,16 @@ def test_a_closed_output_cancels_the_goal(at_home, tmp_path):
     assert process.wait(TIMEOUT_FACTOR * 20.0) == 128 + signal.SIGPIPE, errors.read_text()
     assert at_home.state()["at_rest"]
     assert errors.read_text().splitlines() == ["canceling (SIGPIPE), interrupt again to quit without the result"]
+
+
+@pytest.mark.parametrize("closed", [(2,), (1,), (0, 1, 2)])
+def test_a_goal_is_sent_although_the_standard_streams_are_closed(at_home, closed):
+    process = subprocess.Popen(slow_motion())
+    wait_until_moving(at_home)
+    stop = [find_program("ur_ros_rtde_cli", "ur"), "call", "stop"]
+    assert subprocess.run(stop, preexec_fn=lambda: [os.close(number) for number in closed]).returncode == 0
+    assert at_home.state()["at_rest"]
+    assert process.wait(TIMEOUT_FACTOR * 20.0) == 1
 
 
 def test_the_result_can_be_piped_to_head(at_home):

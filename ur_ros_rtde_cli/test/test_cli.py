@@ -67,16 +67,12 @@ def test_the_state_says_that_it_is_old_and_names_active_modes(monkeypatch):
 
 @pytest.mark.parametrize("arguments", [["state"], ["call", "move_j"], ["record", "run.csv"], ["doctor", "--report", "report.md"]])
 def test_an_invalid_namespace_is_rejected(arguments, capsys):
-    with pytest.raises(SystemExit) as end:
-        main([*arguments, "--namespace", "my-robot"])
-    assert end.value.code == 2 and '"my-robot" is no namespace' in capsys.readouterr().err
+    assert main([*arguments, "--namespace", "my-robot"]) == 2 and '"my-robot" is no namespace' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", ["call", "state", "plot"])
 def test_each_command_shows_the_version(command, capsys):
-    with pytest.raises(SystemExit) as end:
-        main([command, "--version"])
-    assert end.value.code == 0 and capsys.readouterr().out.startswith("ur_ros_rtde ")
+    assert main([command, "--version"]) == 0 and capsys.readouterr().out.startswith("ur_ros_rtde ")
 
 
 def test_a_missing_driver_is_reported_after_the_wait():

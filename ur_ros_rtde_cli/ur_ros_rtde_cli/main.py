@@ -5,13 +5,11 @@ import difflib
 import importlib
 import os
 import pathlib
-import signal
 import sys
 from typing import Any, List, Optional
 
 from . import output
 from .errors import CliError
-from .interruptions import Interrupted
 
 COMMANDS = {"call": "send a goal, show its feedback and print its result",
             "state": "show the state of the robot, once or continuously",
@@ -135,20 +133,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         _complete()
     if _belongs_to_checkout(arguments) and _checkout_script() is not None:
         os.execv(str(_checkout_script()), [str(_checkout_script()), *arguments])
-    try:
-        with output.written():
-            return _run(arguments)
-    except CliError as error:
-        output.print_error(error)
-        return error.exit_status
-    except Interrupted as interrupted:
-        return interrupted.exit_code
-    except KeyboardInterrupt:
-        return Interrupted(signal.SIGINT).exit_code
-    except BrokenPipeError:
-        return Interrupted(signal.SIGPIPE).exit_code
-    finally:
-        output.drop_unwritable()
+    return output.run(lambda: _run(arguments))
 
 
 def _run(arguments: List[str]) -> int:

@@ -46,10 +46,12 @@ class Modes:
             goal.send().result(self._connection.result_timeout if result_timeout is None else result_timeout, on_progress)
             yield
         except BaseException:
-            goal.abandon()
-            if goal.may_have_succeeded:  # otherwise, a mode may be that of another client
-                with ending("force mode"):
-                    self._end_force_mode()
+            try:
+                goal.abandon()
+            finally:
+                if goal.may_have_succeeded:  # otherwise, a mode may be that of another client
+                    with ending("force mode"):
+                        end_even_if_interrupted("force mode", self._end_force_mode)
             raise
         end_even_if_interrupted("force mode", self._end_force_mode)
 

@@ -124,7 +124,7 @@ def _reserve_domain(reserved: contextlib.ExitStack) -> int:
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
-    """A ROS domain of its own for this process and its children, in which no node runs at its begin, and which other hosts do not see: a
+    """A ROS domain of its own for this process and its children, in which no other node runs yet, and which other hosts do not see: a
     goal of a test reaches no other robot, unless a driver is started in the domain in the meantime."""
     with contextlib.ExitStack() as reserved, pytest.MonkeyPatch.context() as environment:
         number = _reserve_domain(reserved)

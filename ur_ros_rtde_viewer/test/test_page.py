@@ -276,3 +276,14 @@ def test_the_page_returns_after_a_restart_of_the_viewer(tab, viewer, simulator):
     tab.button("Send").click()
     tab.wait_for_text("/move_j: succeeded")
     assert simulator.state()["actual"]["position"] == pytest.approx(home_plus(0.1), abs=1e-3)
+
+
+def test_a_pose_in_another_frame_does_not_begin_with_that_of_the_tcp(tab):
+    tab.select_action("move_l")
+    position = tab.field("pose.position (x, y, z) [m]")
+    until(position.input_value, "the position of the TCP")
+    tab.field("frame id").fill("table")
+    until(lambda: not position.input_value(), "an empty position")
+    tab.button("Use the current position").click()
+    tab.wait_for_text("The current position is in base: leave frame_id empty to use it.")
+    assert not position.input_value()

@@ -191,6 +191,15 @@ def test_edits_that_follow_each_other_at_once_all_arrive(tab, form):
     assert form.taken == [["1.58", "2.5", True]]
 
 
+def test_clicks_and_edits_that_follow_each_other_at_once_all_arrive(tab, form):
+    tab.page.evaluate(DISPATCH, typed(form.first, "1", "1.57") + clicked(form.checkbox) + clicked(form.button) + typed(form.second, "2.5"))
+    until(lambda: form.taken, "the click")
+    tab.page.wait_for_timeout(3e3 * PAUSE)
+    tab.button("Take").click()
+    until(lambda: len(form.taken) > 1, "the second click")
+    assert form.taken[1] == ["1.57", "2.5", True] and form.taken[0][0] == "1.57" and form.taken[0][2]
+
+
 def test_keys_that_follow_each_other_at_once_all_arrive(tab, form):
     tab.page.locator(form.first).select_text()
     for text in ("1.57", "2.5"):

@@ -6,7 +6,6 @@ import logging
 from typing import List, Optional
 
 from ur_ros_rtde_cli import output
-from ur_ros_rtde_cli.errors import CliError
 
 from .arguments import DESCRIPTION, add_arguments, robots
 from .errors import ViewerError
@@ -77,11 +76,4 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    try:
-        with output.written():
-            return run(parse(arguments))
-    except CliError as error:
-        output.print_error(error)
-        return error.exit_status
-    finally:
-        output.drop_unwritable()
+    return output.run(lambda: run(parse(arguments)))

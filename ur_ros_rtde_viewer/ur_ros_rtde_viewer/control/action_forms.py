@@ -36,6 +36,13 @@ class Source(Enum):
     TCP_POSITION = auto()
     TCP_ORIENTATION = auto()
 
+    @property
+    def is_in_base(self) -> bool:
+        return self in (Source.TCP_POSITION, Source.TCP_ORIENTATION)
+
+
+FRAME = ("frame_id",)  # path of the field that names the frame of the poses; empty: base
+
 
 @dataclass(frozen=True)
 class FormField:
@@ -129,7 +136,7 @@ def _inputs(value: Any, kind: Any, path: Path, comment: str, constants: Mapping[
     elif isinstance(kind, idl.AbstractNestedType):
         yield _list_input(value, kind, path, comment)
     elif isinstance(kind, idl.AbstractGenericString):
-        yield FormField(path, Kind.TEXT, value, comment, multiline="one line" not in comment)
+        yield FormField(path, Kind.TEXT, value, comment, multiline="URScript program" in comment)
     elif kind.typename == idl.BOOLEAN_TYPE:
         yield FormField(path, Kind.FLAG, bool(value), comment)
     else:

@@ -9,7 +9,7 @@ from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.fields import FieldError, Path
 
 from . import action_forms
-from .action_forms import Form, FormField, Kind, Source
+from .action_forms import FRAME, Form, FormField, Kind, Source
 from .goal_view import GoalView, escaped
 from .goals import Phase, SentGoal
 from .robot_control import RobotControl
@@ -27,6 +27,7 @@ class FormPanel:
         self._form: Optional[Form] = None
         self._folder: Any = None
         self._inputs: Dict[Path, Any] = {}
+        self._filled: Dict[Path, str] = {}  # with the current position
         self._goals: List[GoalView] = []
         self._closed = False
         with container:
@@ -101,7 +102,7 @@ class FormPanel:
     def _remove(self) -> None:
         if self._folder is not None:
             self._folder.remove()
-        self._form, self._folder, self._inputs = None, None, {}
+        self._form, self._folder, self._inputs, self._filled = None, None, {}, {}
         self._send_button.disabled, self._position_button.visible = True, False
         self._show_error("")
 
@@ -111,18 +112,31 @@ class FormPanel:
             return self._gui.add_checkbox(field.label, bool(field.default), hint=hint)
         if field.kind == Kind.CHOICE:
             return self._gui.add_dropdown(field.label, field.choices, initial_value=str(field.default), hint=hint)
-        return self._gui.add_text(field.label, str(field.default), multiline=field.multiline, hint=hint)
+        handle = self._gui.add_text(field.label, str(field.default), multiline=field.multiline, hint=hint)
+        if field.path == FRAME:
+            handle.on_update(self._locked(self._clear_pose_in_base))
+        return handle
+
+    def _is_in_base(self) -> bool:
+        return FRAME not in self._inputs or not self._inputs[FRAME].value
+
+    def _clear_pose_in_base(self) -> None:
+        """The pose of the TCP would be another place in another frame; the user has to enter one."""
+        for field in self._form.fields if self._form and not self._is_in_base() else ():
+            if field.source.is_in_base and self._inputs[field.path].value == self._filled.get(field.path):
+                self._inputs[field.path].value = "" if field.source == Source.TCP_POSITION else str(field.default)
 
     def _use_current_position(self) -> None:
         for field in self._form.fields if self._form else ():
             text = self._robot.current(field.source)
-            if text is not None:
-                self._inputs[field.path].value = text
+            if text is not None and (self._is_in_base() or not field.source.is_in_base):
+                self._inputs[field.path].value = self._filled[field.path] = text
 
     def _refresh(self) -> None:
         """Uses the current position, or says why there is none."""
         silence = self._robot.silence
-        self._show_error(f"The current position is not known: {silence}." if silence else "")
+        problem = f"The current position is not known: {silence}." if silence else ""
+        self._show_error(problem or ("" if self._is_in_base() else "The current position is in base: leave frame_id empty to use it."))
         self._use_current_position()
 
     def _show_error(self, text: str) -> None:
@@ -132,6 +146,7 @@ class FormPanel:
         form, inputs = self._form, self._inputs
         if form is None or self._closed:
             return
+        self._clear_pose_in_base()
         try:
             goal = form.read({path: handle.value for path, handle in inputs.items()})
         except FieldError as error:

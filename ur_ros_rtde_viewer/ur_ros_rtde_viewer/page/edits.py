@@ -7,7 +7,7 @@ a click, together, the first one is lost, and a goal has other values than the p
 from . import style
 from .scripts import script
 
-PAUSE = 0.1  # s, after an edit, in which viser sends it
+PAUSE = 0.15  # s, after an edit or a click, in which viser has sent it
 
 # While an edit may not be sent yet, edits of other texts, of checkboxes and lists, and clicks on buttons wait. Sliders, lists and numbers
 # are also edited by keys and pointers, which do not wait. STOP, which is also in the palette of commands (Spotlight), waits for nothing and
@@ -15,7 +15,7 @@ PAUSE = 0.1  # s, after an edit, in which viser sends it
 SPACING = script("spaceEdits", f"""
 const texts = 'textarea, input:not([type=file], [type=checkbox])', clickable = 'button, [type=checkbox], [role=option]';
 const editors = '[class*=Slider], [aria-haspopup=listbox], [role=option], [type=checkbox], [class*=NumberInput]';
-const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, button[class*=NumberInput], [class*=Spotlight]';
+const atOnce = '{style.STOP_BUTTON}, {style.JOG_BUTTONS}, button[class*=NumberInput], [class*=Spotlight], input[aria-haspopup=listbox]';
 let edited = null, timer = null, waiting = [], isPassing = false;
 const edit = element => {{
   edited = edited && edited !== element ? window : element;  // window: several
@@ -24,13 +24,13 @@ const edit = element => {{
 }};
 const passOn = () => {{
   edited = null;
+  const element = waiting.shift();
+  if (!element) return;
   isPassing = true;
-  while (waiting.length && !edited) {{
-    const element = waiting.shift();
-    if (element.matches(clickable)) element.click();
-    else element.dispatchEvent(new Event('input', {{bubbles: true}}));
-  }}
+  if (element.matches(clickable)) element.click();
+  else element.dispatchEvent(new Event('input', {{bubbles: true}}));
   isPassing = false;
+  edit(element);
 }};
 const waits = (event, element) => {{
   if (isPassing || element.matches(atOnce) || !waiting.length && (!edited || edited === element)) return false;
