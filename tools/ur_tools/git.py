@@ -18,7 +18,7 @@ _CACHES = ("__pycache__", ".pytest_cache")
 
 
 def run(*arguments: str, root: pathlib.Path = ROOT) -> "subprocess.CompletedProcess[str]":
-    """Returns the result of git in `root`, also if that belongs to another user (from git 2.38 on). The status is 127 if git is not
+    """Returns the result of git in `root`, even if that belongs to another user (from git 2.38 on). The status is 127 if git is not
     installed."""
     command = ["git", "-c", f"safe.directory={root}", *arguments]
     env = {name: value for name, value in os.environ.items() if name not in REPOSITORY_VARIABLES}

@@ -1,4 +1,4 @@
-"""The end of a program, also if its output cannot be written."""
+"""The end of a program, even one whose output cannot be written."""
 
 import contextlib
 import errno
