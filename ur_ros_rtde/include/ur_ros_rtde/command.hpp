@@ -168,8 +168,7 @@ CalledCommand Command<A>::called(const Goal & goal, Result & result)
   const auto in_base = std::make_shared<GoalInBase<Goal>>(goal);
   return {*description_,
           [this, in_base](const std::stop_token & stop) {
-            Frames & frames = description_->host.frames();
-            return in_base->has_frame(frames.base()) ? in_base->resolve(frames, stop) : Status();
+            return in_base->resolve(description_->host.frames(), stop);
           },
           [this, in_base](Check & check) { this->check(**in_base, check); },
           [this, in_base] { return stop_options(**in_base); },

@@ -137,6 +137,28 @@ Expected<FrameTree::Way> FrameTree::way(const std::string & frame, Clock::time_p
   return failure(ErrorCode::invalid_goal, fmt::format("the frames above \"{}\" form a loop", frame));
 }
 
+FrameTree::Stamp FrameTree::Way::newest() const
+{
+  Stamp result = Stamp::max();
+  for (const auto & link : links) {
+    result = link->second.received ? std::min(result, link->second.poses.back().first) : result;
+  }
+  return result;
+}
+
+tl::expected<Vector6, std::string> FrameTree::Way::pose_in_root(Stamp stamp) const
+{
+  Vector6 result{};
+  for (const auto & link : links) {
+    const auto pose = link->second.at(stamp);
+    if (!pose) {
+      return tl::make_unexpected(link->first);
+    }
+    result = pose_trans(*pose, result);
+  }
+  return result;
+}
+
 Expected<Vector6> FrameTree::pose(const std::string & frame, const std::string & base,
                                   Clock::time_point now) const
 {
@@ -156,26 +178,16 @@ Expected<Vector6> FrameTree::pose(const std::string & frame, const std::string &
         fmt::format("TF does not connect \"{}\" with \"{}\": their trees begin with \"{}\" and \"{}\"", frame,
                     base, target->root, origin->root));
   }
-  Stamp common = Stamp::max();
-  for (const Way & way : {*target, *origin}) {
-    for (const auto & link : way.links) {
-      common = link->second.received ? std::min(common, link->second.poses.back().first) : common;
-    }
+  const Stamp common = std::min(target->newest(), origin->newest());
+  const auto target_in_root = target->pose_in_root(common);
+  const auto base_in_root = origin->pose_in_root(common);
+  if (!target_in_root || !base_in_root) {
+    return failure(ErrorCode::invalid_goal,
+                   fmt::format("TF does not tell where \"{}\" was when the other frames on the way from "
+                               "\"{}\" to \"{}\" were seen last",
+                               target_in_root ? base_in_root.error() : target_in_root.error(), base, frame));
   }
-  std::array<Vector6, 2> in_root{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (const auto & link : (i == 0 ? *target : *origin).links) {
-      const auto pose = link->second.at(common);
-      if (!pose) {
-        return failure(ErrorCode::invalid_goal,
-                       fmt::format("TF does not tell where \"{}\" was when the other frames on the way from "
-                                   "\"{}\" to \"{}\" were seen last",
-                                   link->first, base, frame));
-      }
-      in_root[i] = pose_trans(*pose, in_root[i]);
-    }
-  }
-  return pose_trans(pose_inverse(in_root[1]), in_root[0]);
+  return pose_trans(pose_inverse(*base_in_root), *target_in_root);
 }
 
 }  // namespace ur_ros_rtde

@@ -1,10 +1,11 @@
 """Ament prefixes with plugin packages."""
 
+import contextlib
 import os
 import pathlib
 import shutil
 
-from programs import find_program
+from programs import find_program, start_node
 
 # Commands that are built with the tests (test/plugins), and their package.
 TEST_COMMANDS = "test_commands"
@@ -55,3 +56,14 @@ def environment_of_test_commands(prefix):
                       for name, kind in _CLASSES.items())
     description = f'<library path="{TEST_COMMANDS}">{classes}</library>'
     return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(prefix, TEST_COMMANDS, description, [library]))
+
+
+@contextlib.contextmanager
+def driver_of_test_commands(simulator, folder, *plugins):
+    """Yields a driver with these plugins, which may be the commands of test/plugins. Prints its output at the end."""
+    environment = environment_of_test_commands(folder / "prefix")
+    assert environment, "the test commands have not been built"
+    driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"plugins:=[{','.join(plugins)}]", env=environment)
+    yield driver
+    driver.stop()
+    print(driver.output())

@@ -2,8 +2,7 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from plugin_prefix import environment_of_test_commands
-from programs import start_node
+from plugin_prefix import driver_of_test_commands
 from support import wait_for
 from trajectories import TargetRecorder
 
@@ -15,15 +14,10 @@ WRIST = 5
 
 @pytest.fixture(scope="module")
 def driver(simulator, tmp_path_factory):
-    """A driver with the commands of test/plugins."""
-    environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
-    assert environment, "the test commands have not been built"
-    plugins = "plugins:=[move_j,move_j_relative,move_l,speed_j,stop,calls_speed_j,calls_move_j_relative,calls_itself," \
-              "calls_without_the_arm,leaves_turning,moves_on]"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", plugins, env=environment)
-    yield driver
-    driver.stop()
-    print(driver.output())
+    with driver_of_test_commands(simulator, tmp_path_factory.mktemp("prefix"), "move_j", "move_j_relative", "move_l", "speed_j", "stop",
+                                 "calls_speed_j", "calls_move_j_relative", "calls_itself", "calls_without_the_arm", "leaves_turning",
+                                 "moves_on") as driver:
+        yield driver
 
 
 def wrist(simulator):

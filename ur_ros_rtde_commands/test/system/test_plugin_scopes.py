@@ -3,8 +3,7 @@ of test/plugins."""
 
 import pytest
 from action_msgs.msg import GoalStatus
-from plugin_prefix import environment_of_test_commands
-from programs import start_node
+from plugin_prefix import driver_of_test_commands
 from robot_fixtures import make_ready
 from support import HOME, wait_for
 
@@ -17,14 +16,9 @@ DOOR = 7  # digital input of watches_a_door
 
 @pytest.fixture(scope="module")
 def driver(simulator, tmp_path_factory):
-    """A driver with the commands of test/plugins."""
-    environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
-    assert environment, "the test commands have not been built"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,asks_during_a_motion,checks_again,"
-                        "ends_its_scope,never_looks,turns_as_mode,watches_a_door]", env=environment)
-    yield driver
-    driver.stop()
-    print(driver.output())
+    with driver_of_test_commands(simulator, tmp_path_factory.mktemp("prefix"), "move_j", "stop", "asks_during_a_motion", "checks_again",
+                                 "ends_its_scope", "never_looks", "turns_as_mode", "watches_a_door") as driver:
+        yield driver
 
 
 @pytest.mark.parametrize("when", ["during", "late"])

@@ -2,8 +2,7 @@
 
 import pytest
 from action_msgs.msg import GoalStatus
-from plugin_prefix import environment_of_test_commands
-from programs import start_node
+from plugin_prefix import driver_of_test_commands
 from robot_fixtures import make_ready
 from support import HOME, wait_for
 
@@ -15,14 +14,9 @@ OTHER_TOOL = pytest.approx((2.0, 0.1))  # kg, m; the controller's registers have
 
 @pytest.fixture(scope="module")
 def driver(simulator, tmp_path_factory):
-    """A driver with the commands of test/plugins."""
-    environment = environment_of_test_commands(tmp_path_factory.mktemp("prefix") / "prefix")
-    assert environment, "the test commands have not been built"
-    driver = start_node("driver", simulator.address, "ur_type:=ur10e", "plugins:=[move_j,stop,tells_frame,waits_for_output,"
-                        "uses_another_tool,fails_to_set_the_tool]", env=environment)
-    yield driver
-    driver.stop()
-    print(driver.output())
+    with driver_of_test_commands(simulator, tmp_path_factory.mktemp("prefix"), "move_j", "stop", "tells_frame", "waits_for_output",
+                                 "uses_another_tool", "fails_to_set_the_tool") as driver:
+        yield driver
 
 
 def test_an_output_that_no_sample_contains_can_be_waited_for(robot, simulator):

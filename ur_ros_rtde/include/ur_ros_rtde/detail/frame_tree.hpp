@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 #include "ur_ros_rtde_robot/state/sample.hpp"
@@ -43,6 +45,11 @@ class FrameTree {
   struct Way {
     std::vector<Links::const_iterator> links;
     std::string root;
+    /// The newest time at which each of the links is known.
+    Stamp newest() const;
+    /// The pose of the frame in the root at this time. Fails with the name of a frame that was not known
+    /// then.
+    tl::expected<Vector6, std::string> pose_in_root(Stamp stamp) const;
   };
   Expected<Way> way(const std::string & frame, Clock::time_point now) const;
   bool knows(const std::string & frame) const;

@@ -77,10 +77,13 @@ class GoalInBase {
     }
     return false;
   }
-  /// Transforms the poses of a goal that has a frame. Waits for TF; see Frames::pose().
+  /// Transforms the poses if it has a frame. Waits for TF; see Frames::pose().
   Status resolve(Frames & frames, const std::stop_token & stop)
   {
     if constexpr (GivenInFrame<Message>) {
+      if (!has_frame(frames.base())) {
+        return {};
+      }
       const auto frame = frames.pose(message_.frame_id, stop);
       if (!frame) {
         return failure(frame.error().code, "frame_id: " + frame.error().message);
