@@ -1,4 +1,4 @@
-"""Checks the sources: formatting of C++, Python with ruff and mypy, machine-specific paths, clang-tidy."""
+"""Checks the sources: formatting of C++, Python with ruff and mypy, the Dockerfile with hadolint, machine-specific paths, clang-tidy."""
 
 import pathlib
 import re
@@ -73,6 +73,11 @@ def check_mypy(layout: Layout) -> Check:
     return Check("sources: mypy", not failed, "\n".join(dict.fromkeys("\n".join(map(_findings, failed)).splitlines())))
 
 
+def check_dockerfile(layout: Layout) -> Check:
+    result = _run_tool(layout, "hadolint", "--no-color", "Dockerfile")
+    return Check("sources: hadolint", result.returncode == 0, _findings(result))
+
+
 def check_paths() -> Check:
     found = []
     for path in git.files(ROOT):
@@ -90,7 +95,7 @@ def check_paths() -> Check:
 
 def checks(layout: Layout) -> List[Check]:
     console.step("Checking the sources")
-    return [check_format(layout), check_ruff(layout), check_mypy(layout), check_paths()]
+    return [check_format(layout), check_ruff(layout), check_mypy(layout), check_dockerfile(layout), check_paths()]
 
 
 def format_sources(layout: Layout) -> int:
