@@ -4,7 +4,9 @@ import argparse
 import functools
 import hashlib
 import http.server
+import os
 import pathlib
+import re
 import shutil
 import subprocess
 from typing import Iterator, List, Tuple
@@ -41,11 +43,19 @@ def _title(page: pathlib.Path) -> str:
     return next((line[2:] for line in page.read_text().splitlines() if line.startswith("# ")), page.stem)
 
 
+def _links(page: pathlib.Path) -> List[pathlib.Path]:
+    """Returns the files that a page links to, in its list of the documentation first."""
+    before, _, after = page.read_text().partition("\n## Documentation\n")
+    return [pathlib.Path(os.path.normpath(page.parent / name)) for name in re.findall(r"\]\(([\w./]+)", after + before)]
+
+
 def _menu(source: pathlib.Path) -> Iterator[Tuple[str, List[str]]]:
-    """Yields the headings of the menu with their pages. README.md of a folder comes first, the others follow by title."""
+    """Yields the headings of the menu with their pages, in the order in which README.md, of the folder or of the project, links to them."""
     for heading, folder, pattern in SECTIONS:
-        pages = sorted((source / folder).glob(pattern), key=lambda page: (page.stem != "README", _title(page).lower()))
-        yield heading, [str(page.relative_to(source)) for page in pages]
+        pages, contents = list((source / folder).glob(pattern)), source / folder / "README.md"
+        first = [contents] if contents in pages else []
+        linked = [page for page in _links(contents if first else source / "README.md") if page in pages]
+        yield heading, [str(page.relative_to(source)) for page in dict.fromkeys((*first, *linked, *sorted(pages, key=_title)))]
     yield "Project", list(OTHER_PAGES)
 
 
