@@ -67,7 +67,7 @@ TEST_F(RobotConnectionTest, ReportsThatPolyScopeXIsNotSupported)
 
 TEST_F(RobotConnectionTest, BecomesReadyOnEarlyVersionsOfPolyscope5)
 {
-  for (const char * version : {"5.0.0", "5.3.0"}) {
+  for (const char * version : {"5.0.0", "5.3.0", "5.9.0"}) {
     auto options = Controller::options();
     options.polyscope_version = version;
     controller.start(options);

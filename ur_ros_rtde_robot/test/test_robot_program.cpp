@@ -51,6 +51,20 @@ TEST_F(RobotProgramTest, RestartsControlProgramStoppedOnThePendant)
   EXPECT_TRUE(robot->control_for_queries()->isSteady());
 }
 
+TEST_F(RobotProgramTest, DoesNotStopAProgramThatBeginsBeforeItsOwnIsSent)
+{
+  make_both();
+  auto hold = robot->hold_program();
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(comes_to(RobotState::connecting, ErrorCode::not_ready)) << "it is about to start its own";
+  controller.run_other_program();
+  ASSERT_TRUE(eventually([&] { return robot->latest()->is_program_running(); }));
+  hold.reset();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped)) << log.text();
+  EXPECT_EQ(controller.state().at("program").at("name"), "other");
+  EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
+}
+
 TEST_F(RobotProgramTest, WarnsThatItsStartHasZeroedTheForceOfAContact)
 {
   make_both();

@@ -48,8 +48,9 @@ class Run {
   /// resource or because it stops the arm, gets control_for_queries().
   Locked<ur_rtde::RTDEControlInterface> control();
   Locked<ur_rtde::RTDEReceiveInterface> receive() const { return context_.robot.receive(); }
-  Locked<ur_rtde::RTDEIOInterface> io() const { return context_.robot.io(); }
-  Locked<ur_rtde::DashboardClient> dashboard() const { return context_.robot.dashboard(); }
+  /// This one and dashboard() also work after a stop was requested, to clean up, until the result was sent.
+  Locked<ur_rtde::RTDEIOInterface> io() const;
+  Locked<ur_rtde::DashboardClient> dashboard() const;
   /// From any thread. Functions that start a motion or a mode, or end the control program, throw.
   Locked<ur_rtde::RTDEControlInterface> control_for_queries() const
   {
@@ -213,6 +214,7 @@ class Run {
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();
+  void require_unsent_result() const;
   CommandPlugin * find_command(const std::string & name) const;
   Outcome execute(const CalledCommand & called);
   Status may_execute(const CalledCommand & called) const;

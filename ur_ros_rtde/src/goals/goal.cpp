@@ -55,6 +55,7 @@ void Goal::stop(const Error & why)
 void Goal::abandon()
 {
   const Error why = stop_request_->reason().value_or(Error{ErrorCode::timeout, "the goal did not end"});
+  stop_request_->abandon();
   const Status at_rest = stopped().value_or(Status());
   end(Error{why.code,
             fmt::format("{}; the command did not return after that: its result was sent without it, and {}",

@@ -56,6 +56,25 @@ Locked<ur_rtde::RTDEControlInterface> Run::control()
   return control_timeout_.count() > 0 ? control.before_others(control_timeout_) : control;
 }
 
+Locked<ur_rtde::RTDEIOInterface> Run::io() const
+{
+  require_unsent_result();
+  return context_.robot.io();
+}
+
+Locked<ur_rtde::DashboardClient> Run::dashboard() const
+{
+  require_unsent_result();
+  return context_.robot.dashboard();
+}
+
+void Run::require_unsent_result() const
+{
+  if (context_.stop_request->is_abandoned()) {
+    throw RobotError(context_.stop_request->reason().value());
+  }
+}
+
 Expected<StopReport> Run::wait_for_stop()
 {
   if (!context_.stopping) {

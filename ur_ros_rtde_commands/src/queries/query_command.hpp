@@ -36,7 +36,8 @@ class AnswerTimeout {
 
 /// Calls `function` with ur_rtde's control interface and returns its result. The control program answers
 /// between two of its cycles, also during a motion. The interface is locked in the meantime. Without an
-/// answer, throws RobotError with the reason why the robot cannot answer, or rejected_by_robot.
+/// answer, throws RobotError with the reason why the goal has to end, or why the robot cannot answer, or
+/// rejected_by_robot.
 template <typename Function>
 auto query(Run & run, Function && function)
 {
@@ -51,6 +52,9 @@ auto query(Run & run, Function && function)
     throw RobotError({ErrorCode::not_supported,
                       fmt::format("not available with register_range: upper: {}", error.what())});
   } catch (const std::runtime_error & error) {
+    if (const auto why = run.stop_reason()) {
+      throw RobotError(*why);
+    }
     if (const Status possible = run.robot().motion_possible(); !possible) {
       throw RobotError(possible.error());
     }
@@ -59,8 +63,7 @@ auto query(Run & run, Function && function)
   }
 }
 
-/// Throws std::runtime_error unless there are 6 values. ur_rtde returns an empty vector if a query has
-/// failed.
+/// Throws std::runtime_error unless there are 6 values.
 std::array<double, 6> to_array6(const std::vector<double> & values);
 /// Converts a 6x6 matrix from the column-major order of ur_rtde to row-major order.
 std::array<double, 36> to_row_major(const std::vector<double> & columns);

@@ -11,7 +11,8 @@ class SetSpeedSlider : public Command<ur_ros_rtde_msgs::action::SetSpeedSlider> 
 
   void check(const Goal & goal, Check & check) const override
   {
-    check.in_range("fraction", goal.fraction, 0.0, 1.0);
+    // A robot that leaves 0 has made a protective stop (Universal_Robots_Client_Library, issue 58).
+    check.in_range("fraction", goal.fraction, 0.01, 1.0);
   }
 
   Outcome run(const Goal & goal, Run & run) override

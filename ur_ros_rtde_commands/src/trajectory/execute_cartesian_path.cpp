@@ -30,14 +30,18 @@ Vector6 to_array(const std::vector<double> & values)
 Expected<Joints> query_inverse_kinematics(const Run & run, const Pose & pose, const Joints & guess)
 {
   const Vector6 target = kinematics::to_ur(pose);
-  const auto q = run.control_for_queries()->getInverseKinematics({target.begin(), target.end()},
-                                                                 {guess.begin(), guess.end()});
-  if (q.size() != 6) {
+  const auto control = run.control_for_queries().hold();
+  try {
+    return to_joints(
+        control->getInverseKinematics({target.begin(), target.end()}, {guess.begin(), guess.end()}));
+  } catch (const std::runtime_error &) {  // no answer
+    if (const auto why = run.stop_reason()) {
+      return tl::unexpected(*why);
+    }
     return failure(ErrorCode::unreachable,
                    fmt::format("the controller finds no joint positions for ({:.3f}, {:.3f}, {:.3f}) m",
                                target[0], target[1], target[2]));
   }
-  return to_joints(q);
 }
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "queries/query_command.hpp"
 #include "ur_ros_rtde_robot/state/conversions.hpp"
 
 namespace ur_ros_rtde {
@@ -90,12 +91,7 @@ Check & check_direction(Check & check, const geometry_msgs::msg::Twist & directi
 
 int contact_steps(Run & run, const std::vector<double> & direction)
 {
-  const int steps = run.control()->toolContact(direction);
-  // ur_rtde returns 0 if there is no answer.
-  if (const Status possible = run.robot().motion_possible(); !possible) {
-    throw RobotError(possible.error());
-  }
-  return steps;
+  return query(run, [&](auto & control) { return control.toolContact(direction); });
 }
 
 Outcome move_until_contact(Run & run, const ContactMotion & motion,

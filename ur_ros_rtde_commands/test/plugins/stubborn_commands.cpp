@@ -84,7 +84,7 @@ class NeverLooks : public Command<SpeedJAction> {
   }
 };
 
-/// Turns joints with the resource of a mode, and hangs while they turn.
+/// Turns joints with the resource of a mode, hangs while they turn, and switches an output on then.
 class TurnsAndHangs : public Command<SpeedJAction> {
   CommandTraits traits() const override { return {.resource = Resource::mode}; }
 
@@ -93,6 +93,7 @@ class TurnsAndHangs : public Command<SpeedJAction> {
     const std::vector<double> velocities(goal.joint_velocities.begin(), goal.joint_velocities.end());
     run.control()->speedJ(velocities, goal.acceleration, 0.0);
     std::this_thread::sleep_until(end_of(goal));
+    run.io()->setStandardDigitalOut(0, true);
     return Outcome::success();
   }
 };

@@ -80,6 +80,7 @@ BAD_GOALS = [
     (SetPayload, "set_payload", {"mass": -1.0}, "mass is -1 kg", "50"),
     (SetPayload, "set_payload", {"center_of_gravity": Vector3(z=NAN)}, "center_of_gravity.z is nan", "1"),
     (SetSpeedSlider, "set_speed_slider", {"fraction": 1.5}, "fraction is 1.5", "1"),
+    (SetSpeedSlider, "set_speed_slider", {"fraction": 0.0}, "fraction is 0", "0.01"),
 ]
 
 

@@ -66,8 +66,8 @@ def test_ctrl_c_ends_a_mode_without_a_goal_while_a_dashboard_command_hangs(cell)
     ends_with_the_arm_at_rest(simulator, driver)
 
 
-def test_a_cancel_stops_what_a_hanging_command_of_a_mode_has_started(cell):
-    simulator, _driver, client = cell
+def test_a_cancel_stops_what_a_hanging_command_of_a_mode_has_started_and_it_switches_no_output_later(cell):
+    simulator, driver, client = cell
     goal = client.send(SpeedJ, "turns_and_hangs", joint_velocities=[0.5, 0.0, 0.0, 0.0, 0.0, 0.0], acceleration=2.0, time=4.0)
     wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
     begin = simulator.state()["timestamp"]
@@ -75,6 +75,9 @@ def test_a_cancel_stops_what_a_hanging_command_of_a_mode_has_started(cell):
     assert time_to_rest(simulator, begin) < STOPPING_TIME
     status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and "did not return" in result.message, result.message
+    wait_for(lambda: "its command has returned after its result was sent" in driver.output(), 15.0, "the end of the command")
+    simulator.wait(0.1, 15.0)
+    assert simulator.state()["io"]["digital_outputs"] == 0
 
 
 def test_a_command_without_a_resource_that_moves_the_arm_cannot_move_it(cell):

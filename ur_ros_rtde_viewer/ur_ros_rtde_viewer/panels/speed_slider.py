@@ -7,6 +7,7 @@ from typing import Any, Callable, Optional
 from ..state.robot_state import RobotState
 
 SETTLING_TIME = 0.5  # s
+LEAST = 1  # percent, that set_speed_slider takes; the pendant can be at 0
 
 
 class SpeedSlider:
@@ -35,7 +36,7 @@ class SpeedSlider:
         if self._on_change is None:
             self.show_reported()
             return
-        percent = round(min(max(self._element.value, 0), 100))
+        percent = round(min(max(self._element.value, LEAST), 100))
         if percent != self._element.value:
             self._element.value = percent
         self._on_change(percent)

@@ -45,17 +45,6 @@ std::string load(Pendant & pendant, std::string_view file)
   return fmt::format("{}: {}", missing ? "File not found" : "Error while loading program", file);
 }
 
-std::string stop(Pendant & pendant, std::string_view)
-{
-  pendant.stop();
-  return "Stopped";
-}
-
-std::string pause(Pendant & pendant, std::string_view)
-{
-  return reply_to(pendant.pause(), "Pausing program", "pause");
-}
-
 std::string running(Pendant & pendant, std::string_view)
 {
   return fmt::format("Program running: {}", pendant.runner().running() && !pendant.runner().paused());
@@ -260,8 +249,8 @@ constexpr auto never = MinVersion::never;
 constexpr std::array command_table{
     Command{"load", {}, true, load},
     Command{"play", {}, true, nullptr, play},
-    Command{"stop", {}, true, stop},
-    Command{"pause", {}, true, pause},
+    Command{"stop", {}, true, nullptr, stop},
+    Command{"pause", {}, true, nullptr, pause},
     Command{"quit", {}, false, quit},
     Command{"shutdown", {}, true, shutdown},
     Command{"running", {}, false, running},

@@ -22,6 +22,9 @@ struct Command {
 
 // Commands whose reply may take several control cycles.
 PendingReply play(Pendant & pendant, std::string_view argument);
+/// "returns when stopping is completed", "… pausing …" (UR, "Dashboard Server", from CB3 3.3 on).
+PendingReply stop(Pendant & pendant, std::string_view argument);
+PendingReply pause(Pendant & pendant, std::string_view argument);
 PendingReply generate_flight_report(Pendant & pendant, std::string_view type);
 PendingReply generate_support_file(Pendant & pendant, std::string_view folder);
 

@@ -19,6 +19,28 @@ PendingReply play(Pendant & pendant, std::string_view)
   return [reply] { return *reply; };
 }
 
+PendingReply stop(Pendant & pendant, std::string_view)
+{
+  pendant.stop();
+  return [&pendant]() -> std::optional<std::string> {
+    if (pendant.state().runtime_state == RuntimeState::stopping) {
+      return std::nullopt;
+    }
+    return "Stopped";
+  };
+}
+
+PendingReply pause(Pendant & pendant, std::string_view)
+{
+  const bool pauses = pendant.pause().has_value();
+  return [&pendant, pauses]() -> std::optional<std::string> {
+    if (pauses && pendant.state().runtime_state == RuntimeState::pausing) {
+      return std::nullopt;
+    }
+    return pauses ? "Pausing program" : "Failed to execute: pause";
+  };
+}
+
 PendingReply generate_flight_report(Pendant & pendant, std::string_view type)
 {
   return pendant.reports().start_flight_report(type);

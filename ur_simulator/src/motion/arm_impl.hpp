@@ -29,7 +29,7 @@ class PathPlanner;
 
 constexpr double fault_deceleration = 20.0;  ///< rad/s^2
 constexpr double default_force_scaling = 1.0;
-constexpr double default_force_damping = 0.025;
+constexpr double default_force_damping = 0.005;  ///< script manual, "force_mode_set_damping"
 
 /// Any motion, stored in place: motions start inside the control cycle, which does not allocate.
 using AnyMotion = std::variant<std::monostate, PathMotion, JointServoMotion, JointSpeedMotion,

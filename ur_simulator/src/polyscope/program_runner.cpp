@@ -39,6 +39,7 @@ void ProgramRunner::start(urscript::Program program)
 {
   urscript::MachineOptions options;
   options.cycle_time = context_.cycle_time;
+  options.clock = [&state = context_.state] { return state.timestamp; };
   auto machine = std::make_unique<urscript::Machine>(std::move(program), context_.library, *this, options);
   if (machine->program().is_secondary()) {
     start_secondary(std::move(machine));

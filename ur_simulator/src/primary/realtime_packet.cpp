@@ -8,8 +8,11 @@ namespace {
 
 std::size_t packet_size(const PolyscopeVersion & version)
 {
-  if (version.is_e_series()) {
-    return version >= PolyscopeVersion{5, 10, 0, 0} ? 1220 : 1116;
+  if (version >= PolyscopeVersion{5, 10, 0, 0}) {
+    return 1220;
+  }
+  if (version >= (version.is_e_series() ? PolyscopeVersion{5, 4, 0, 0} : PolyscopeVersion{3, 10, 0, 0})) {
+    return 1116;  // with the safety status
   }
   return version >= PolyscopeVersion{3, 5, 0, 0} ? 1108 : 1060;
 }

@@ -19,13 +19,17 @@ using urscript::List;
 using urscript::string_limit;
 using urscript::Value;
 
-/// Removes and returns the bytes before `separator`, which is removed, too.
-std::optional<std::string> extract_until(std::string & received, std::string_view separator)
+/// Of socket_read_string() (script manual).
+constexpr std::size_t read_string_limit = 1024;
+
+/// Removes and returns the bytes before `separator`, which is removed, too, or the first `limit` bytes.
+std::optional<std::string> extract_until(std::string & received, std::string_view separator,
+                                         std::size_t limit)
 {
   const std::size_t end = received.find(separator);
-  if (end > string_limit && received.size() > string_limit) {
-    std::string cut = received.substr(0, string_limit);
-    received.erase(0, string_limit);
+  if (end > limit && received.size() > limit) {
+    std::string cut = received.substr(0, limit);
+    received.erase(0, limit);
     return cut;
   }
   if (end == std::string::npos) {
@@ -38,7 +42,7 @@ std::optional<std::string> extract_until(std::string & received, std::string_vie
 
 std::optional<std::string> extract_line(std::string & received)
 {
-  auto line = extract_until(received, "\n");
+  auto line = extract_until(received, "\n", string_limit);
   if (line && line->ends_with('\r')) {
     line->pop_back();
   }
@@ -89,7 +93,7 @@ Extractor string_extractor(std::string prefix, std::string suffix)
           suffix = std::move(suffix)](std::string & received) -> std::optional<Value> {
     const std::size_t begin = received.find(prefix);
     if (received.empty() || begin == std::string::npos) {
-      const bool junk = received.size() > string_limit;
+      const bool junk = received.size() > read_string_limit;
       received.erase(0, junk ? received.size() - prefix.size() : 0);
       return std::nullopt;
     }
@@ -97,12 +101,12 @@ Extractor string_extractor(std::string prefix, std::string suffix)
     received.erase(0, begin);
     if (suffix.empty()) {
       received.erase(0, prefix.size());
-      Value value(received.substr(0, string_limit));
-      received.erase(0, string_limit);
+      Value value(received.substr(0, read_string_limit));
+      received.erase(0, read_string_limit);
       return value;
     }
     std::string rest = received.substr(prefix.size());
-    auto text = extract_until(rest, suffix);
+    auto text = extract_until(rest, suffix, read_string_limit);
     if (!text) {
       return std::nullopt;
     }

@@ -32,7 +32,7 @@ class ProgramExtension {
 struct CallContext {
   Host & host;
   double cycle_time;      ///< s
-  double time;            ///< s of simulated time since the program started
+  double time;            ///< s of simulated time, see MachineOptions::clock
   std::int32_t line;      ///< of the call, 1-based
   bool secondary;         ///< called from a secondary program (`sec`), which may not take physical time
   std::uint64_t program;  ///< identifies the execution of the program

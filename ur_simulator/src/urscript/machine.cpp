@@ -43,6 +43,7 @@ struct Machine::Impl final : ProgramExtension {
   void cycle()
   {
     instructions = 0;
+    context.time = options.clock ? options.clock() : static_cast<double>(cycles) * options.cycle_time;
     // A thread that has not finished the computation of a critical section continues before the others.
     const std::int32_t first = interpreter.critical_owner();
     if (Thread * thread = interpreter.find_thread(first)) {
@@ -60,7 +61,6 @@ struct Machine::Impl final : ProgramExtension {
     interpreter.remove_ended();
     limit_memory();
     ++cycles;
-    context.time = static_cast<double>(cycles) * options.cycle_time;
   }
 
   // Ends the wait of the thread if possible; true if the thread may run.

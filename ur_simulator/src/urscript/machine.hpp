@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct RunTimeError {
 
 struct MachineOptions {
   double cycle_time = 0.002;  ///< s
+  /// s, of time(), since the controller started. Empty: the time that this program has run.
+  std::function<double()> clock{};
   std::uint32_t instructions_per_cycle =
       5000;  ///< of all threads together; the rest continues in the next cycle
   /// s of simulated time. A thread that computes longer without taking physical time (sync, sleep, a motion,

@@ -94,6 +94,22 @@ TEST_F(DashboardTest, LoadsPlaysPausesAndStopsProgram)
   EXPECT_TRUE(wait_for_program_state(controller, "STOPPED"));
 }
 
+TEST_F(DashboardTest, AnswersPauseAndStopWhenTheArmIsAtRest)
+{
+  for (const auto & [request, answer, state] :
+       {std::array{"pause", "Pausing program", "PAUSED"}, std::array{"stop", "Stopped", "STOPPED"}}) {
+    const json sent = controller.control(
+        {{"command", "run_script"}, {"script", "def turn():\n  speedj([1,0,0,0,0,0], 5, 100)\nend\n"}});
+    ASSERT_TRUE(sent["ok"]) << sent;
+    ASSERT_TRUE(controller.wait_until([](const json & now) { return now["actual"]["velocity"][0] > 0.9; },
+                                      seconds(10)));
+    EXPECT_EQ(client.request(request), answer);
+    const json now = controller.control({{"command", "state"}})["state"];
+    EXPECT_EQ(now["program"]["state"], state);
+    EXPECT_NEAR(now["target"]["velocity"][0].get<double>(), 0.0, 1e-3);
+  }
+}
+
 TEST_F(DashboardTest, NamesProgramWithoutFolder)
 {
   store_program("cell/pick.urp", endless_program);

@@ -321,7 +321,10 @@ TEST(RealtimePacketTest, SizeIsThatOfTheVersion)
   };
   EXPECT_EQ(size("3.4"), 1060u);
   EXPECT_EQ(size("3.5"), 1108u);
-  EXPECT_EQ(size("3.15.8"), 1108u);
+  EXPECT_EQ(size("3.9"), 1108u);
+  EXPECT_EQ(size("3.15.8"), 1116u);
+  EXPECT_EQ(size("5.3"), 1108u);
+  EXPECT_EQ(size("5.4"), 1116u);
   EXPECT_EQ(size("5.9"), 1116u);
   EXPECT_EQ(size("5.10"), 1220u);
 }

@@ -1,6 +1,7 @@
 // Runs the control script of the installed ur_rtde against the simulated arm.
 #include <chrono>
 #include <iostream>
+#include <utility>
 
 #include "control_script_fixture.hpp"
 
@@ -206,6 +207,50 @@ TEST_F(ControlScriptTest, TakesTheLimitsOfTheLookaheadTime)
   }
 }
 
+TEST_F(ControlScriptTest, ReportsNoCommandAsDoneThatReplacesAnother)
+{
+  constexpr std::int32_t get_step_time = 26;
+  constexpr std::int32_t move_l = 3;
+  Vector6 target = fixture.state.target_tcp_pose;
+  target[2] -= 0.1;
+  fixture.state.inputs.integers[0] = get_step_time;
+  fixture.cycle();
+  EXPECT_EQ(output(0), 2);
+  parameters(target, {0.1, 0.5});
+  fixture.state.inputs.integers[1] = 0;
+  fixture.state.inputs.integers[0] = move_l;  // its caller did not wait
+  fixture.until([&] { return output(0) == 2 && output(3) % 256 == move_l; });
+  EXPECT_LT((fixture.state.target_tcp_pose - target).norm(), 1e-4) << "done before its end";
+  expect_running();
+}
+
+TEST_F(ControlScriptTest, MovesDuringAStop)
+{
+  constexpr std::int32_t move_j = 1;
+  constexpr std::int32_t stop_j = 34;
+  Vector6 target = fixture.state.target.position;
+  target[0] += 1.0;
+  const auto begin_to_stop = [&](double deceleration) {
+    parameters(Vector6::Constant(deceleration));
+    fixture.state.inputs.integers[1] = 1;
+    command(stop_j);
+  };
+  const auto begin_to_move = [&] {
+    parameters(target, {0.5, 2.0});
+    fixture.state.inputs.integers[1] = 1;
+    command(move_j);
+    fixture.cycles(250);
+    EXPECT_GT(fixture.state.target.velocity[0], 0.3);
+  };
+  begin_to_move();
+  begin_to_stop(0.1);
+  begin_to_move();
+  begin_to_stop(5.0);
+  fixture.cycles(100);
+  EXPECT_LT(fixture.state.target.velocity.norm(), 1e-9) << "the move goes on";
+  expect_running();
+}
+
 struct ContactDuringMotionTest : ControlScriptTest {
   double contact_height = 0.0;
 
@@ -269,13 +314,54 @@ TEST_F(ContactDuringMotionTest, IsNoticedDuringACommand)
   fixture.state.inputs.integers[1] = 1;
   command(move_l);
 
-  // A late host clears its command only after the contact.
+  // A late host clears its command only long after the contact.
   fixture.state.inputs.integers[0] = read_contact_detection;
   wait_for_contact();
-  fixture.cycles(2);
+  fixture.cycles(100);
+  EXPECT_GT(fixture.state.target_tcp_pose[2], contact_height - 4e-3) << "the arm waits for the host";
   fixture.state.inputs.integers[0] = 0;
   fixture.cycles(1500);
-  EXPECT_NEAR(fixture.state.target_tcp_pose[2], contact_height, 2e-3);
+  EXPECT_NEAR(fixture.state.target_tcp_pose[2], contact_height, 1e-3);
+  expect_running();
+}
+
+TEST_F(ContactDuringMotionTest, IsNoticedInForceMode)
+{
+  constexpr std::int32_t force_mode = 6;
+  parameters(Vector6::Zero(), {0.0, 0.0, -20.0, 0.0, 0.0, 0.0, 0.1, 0.1, 0.05, 0.2, 0.2, 0.2});
+  fixture.state.inputs.integers = {force_mode, 2, 0, 0, 1, 0, 0, 0};
+  wait_for_contact();
+  fixture.cycles(2);
+  EXPECT_EQ(
+      std::count(fixture.host.messages.begin(), fixture.host.messages.end(), "cmd == 254 - contact detected"),
+      1);
+  expect_running();
+}
+
+TEST_F(ContactDuringMotionTest, KeepsTheScriptResponsive)
+{
+  constexpr std::int32_t move_l = 3;
+  constexpr std::int32_t stop_l = 33;
+  Vector6 target = fixture.state.target_tcp_pose;
+  target[2] -= 0.06;
+  parameters(target, {0.05, 0.5});
+  fixture.state.inputs.integers[1] = 1;
+  command(move_l);
+  wait_for_contact();
+  const auto moving = [&] { return fixture.state.target_tcp_speed.norm() > 1e-4; };
+  int heartbeat = output(3) / 256;
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    fixture.cycle();
+    EXPECT_NE(output(3) / 256, std::exchange(heartbeat, output(3) / 256));
+    EXPECT_EQ(output(0), 1) << "the contact is no command whose caller waits";
+  }
+  EXPECT_TRUE(moving()) << "back to the contact";
+  EXPECT_NE(output(2) & 32768, 0) << "as an asynchronous operation";
+  parameters(Vector6::Constant(2.0));
+  fixture.state.inputs.integers[1] = 1;
+  command(stop_l);
+  fixture.cycles(50);
+  EXPECT_FALSE(moving());
   expect_running();
 }
 

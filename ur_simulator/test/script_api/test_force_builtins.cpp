@@ -244,6 +244,10 @@ TEST(ExternalSensorBuiltinTest, IsEnabledWithItsMassAndPosition)
   EXPECT_EQ(fixture.error_of("ft_rtde_input_enable(True, 0.3, [0,0,0.05], [0,0,0.02])"), "");
   EXPECT_TRUE(fixture.state.external_sensor.enabled);
   EXPECT_EQ(fixture.state.external_sensor.mass, 0.3);
+  EXPECT_EQ(fixture.state.external_sensor.measuring_offset.z(), 0.05);
+  // "the resulting torques are computed with opposite sign" (script manual)
+  EXPECT_EQ(fixture.error_of("enable_external_ft_sensor(True, 0.3, [0,0,0.05], [0,0,0.02])"), "");
+  EXPECT_EQ(fixture.state.external_sensor.measuring_offset.z(), -0.05);
   EXPECT_EQ(fixture.error_of("enable_external_ft_sensor(False)"), "");
   EXPECT_FALSE(fixture.state.external_sensor.enabled);
   EXPECT_NE(fixture.error_of("ft_rtde_input_enable(True, -1)").find("negative"), std::string::npos);

@@ -91,8 +91,33 @@ TEST(InstallationBuiltinsTest, SetsPayloadTcpAndGravity)
       fixture.global("pose"),
       urscript::Value::pose(tcp_pose(fixture.model, fixture.state.actual.position, fixture.state.tcp_offset))
           .text());
+  EXPECT_NE(fixture.error_of("set_target_payload(1, [0,0,0], [-1,0,0,0,0,0])").find("must not be negative"),
+            std::string::npos);
+  EXPECT_NE(fixture.error_of("set_target_payload(1, [0,0,0], [1,0,0,0,0,134])").find("within 133"),
+            std::string::npos);
   EXPECT_NE(fixture.error_of("set_payload(100)").find("kg for a UR10e, is 100 kg"), std::string::npos);
   EXPECT_NE(fixture.error_of("set_payload(-1)").find("kg for a UR10e, is -1 kg"), std::string::npos);
+}
+
+TEST(InstallationBuiltinsTest, TheTargetPayloadZeroesTheSensor)
+{
+  ScriptFixture fixture;
+  fixture.world.attach_load({.mass = 2.0});
+  EXPECT_EQ(fixture.error_of("def test():\n set_payload(0)\n sleep(0.5)\n held = get_tcp_force()\n "
+                             "set_target_payload(0, [0,0,0])\n sleep(0.1)\n zeroed = get_tcp_force()\nend"),
+            "");
+  const auto force = [&](const char * name) { return fixture.machine->global(name)->pose()[2]; };
+  EXPECT_LT(force("held"), -15.0);
+  EXPECT_NEAR(force("zeroed"), 0.0, 1.0);
+}
+
+TEST(StateBuiltinsTest, WrenchesAndSpeedsOfTheTcpArePoses)
+{
+  ScriptFixture fixture;
+  for (const char * name : {"get_tcp_force", "get_actual_tcp_speed", "get_target_tcp_speed"}) {
+    EXPECT_EQ(fixture.error_of(fmt::format("def test():\n x = {}()\nend", name)), "");
+    EXPECT_EQ(fixture.global("x").substr(0, 2), "p[") << name;
+  }
 }
 
 TEST(KinematicsBuiltinsTest, ForwardAndInverseAgree)
@@ -128,7 +153,8 @@ TEST(DynamicsBuiltinsTest, ReturnMatrices)
     m = get_mass_matrix()
     symmetric = norm([m[0, 1] - m[1, 0], m[2, 5] - m[5, 2]]) < 0.000000001
     j = get_jacobian()
-    speed = norm(j * get_actual_joint_speeds() - get_actual_tcp_speed())
+    v = get_actual_tcp_speed()
+    speed = norm(j * get_actual_joint_speeds() - [v[0], v[1], v[2], v[3], v[4], v[5]])
     c = norm(get_coriolis_and_centrifugal_torques())
     d = get_jacobian_time_derivative()
     s = size(d)

@@ -107,6 +107,19 @@ TEST_F(ServoSetpointsTest, ThatCrossTheBoundaryOfTheCycleCauseNoDoubleStep)
   expect_single_steps(follow(300, [](int cycle) { return (cycle / 3) % 2; }), 2);
 }
 
+TEST_F(ServoSetpointsTest, AreFollowedWhileTheRegisterHoldsAQuery)
+{
+  constexpr int get_step_time = 26;
+  follow(100, [](int) { return 0; });
+  for (const int command : {get_step_time, get_step_time, 0, 0}) {
+    const double before = target();
+    fixture.state.inputs.integers[0] = command;
+    fixture.cycle();
+    EXPECT_NEAR((target() - before) / step, 1.0, tolerance / step) << command;
+  }
+  expect_running();
+}
+
 TEST_F(ServoSetpointsTest, WithoutTimesCauseDoubleSteps)
 {
   Vector6 q = home;

@@ -126,8 +126,8 @@ TEST_F(SocketBuiltinTest, ATextWithoutEndIsCutAtTheLimitOfStrings)
 {
   host.received.assign(60000, 'x');
   EXPECT_EQ(run(" x = str_len(socket_read_line())"), "16384");
-  EXPECT_EQ(run(" x = str_len(socket_read_string())"), "16384");
-  EXPECT_EQ(run(" x = str_len(socket_read_string(prefix=\"x\", suffix=\"y\"))"), "16384");
+  EXPECT_EQ(run(" x = str_len(socket_read_string())"), "1024");
+  EXPECT_EQ(run(" x = str_len(socket_read_string(prefix=\"x\", suffix=\"y\"))"), "1024");
 }
 
 TEST_F(SocketBuiltinTest, VariablesAreReadAndWritten)

@@ -43,6 +43,7 @@ TEST(MathTest, ComputesFunctionsOfTheUrmathModule)
   EXPECT_DOUBLE_EQ(number("log(2, 8)"), 3.0);
   EXPECT_DOUBLE_EQ(number("norm([3, 4])"), 5.0);
   EXPECT_DOUBLE_EQ(number("norm(-5.5)"), 5.5);
+  EXPECT_EQ(evaluate("[1, 2, 3][norm(-2)]"), "3");  // an int
   EXPECT_EQ(evaluate("ceil(1.1)"), "2");
   EXPECT_EQ(evaluate("floor(-1.1)"), "-2");
   EXPECT_EQ(evaluate("random() < 1 and random() >= 0"), "True");
@@ -70,6 +71,7 @@ TEST(ListTest, HaveLengthTransposeAndInverse)
 TEST(ListTest, ConvertBetweenBitsAndIntegers)
 {
   EXPECT_EQ(evaluate("binary_list_to_integer([True, False, True])"), "5");
+  EXPECT_EQ(evaluate("binary_list_to_integer(make_list(40, True, 40))"), "-1");
   EXPECT_EQ(evaluate("binary_list_to_integer(integer_to_binary_list(-12345))"), "-12345");
   EXPECT_EQ(evaluate("get_list_length(integer_to_binary_list(1))"), "32");
 }
@@ -121,6 +123,7 @@ TEST(StringTest, TextsOfValuesHaveAtMost1023Characters)
 TEST(StringTest, TextsBecomeIntegersFloatsOrErrors)
 {
   EXPECT_EQ(evaluate("to_num(\"10\") / 4"), "2.5");
+  EXPECT_EQ(evaluate("[7][to_num(\"0x3E\") - 62]"), "7");  // an int
   EXPECT_EQ(evaluate("to_num(\" 077\")"), "77");
   EXPECT_EQ(evaluate("to_num(\"-3.0e5\")"), "-300000");
   EXPECT_EQ(evaluate("to_num(\"+5.\")"), "5");

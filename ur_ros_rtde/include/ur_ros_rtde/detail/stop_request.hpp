@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -33,12 +34,17 @@ class StopRequest {
     return reason_;
   }
 
+  /// The result was sent without the goal's thread, which must not act on the robot any more.
+  void abandon() { is_abandoned_ = true; }
+  bool is_abandoned() const { return is_abandoned_; }
+
   /// Wakes waits when a stop is requested.
   std::stop_token token() const { return source_.get_token(); }
 
  private:
   mutable std::mutex mutex_;
   std::optional<StopReason> reason_;
+  std::atomic<bool> is_abandoned_ = false;
   std::stop_source source_;
 };
 

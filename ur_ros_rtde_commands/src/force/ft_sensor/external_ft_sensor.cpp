@@ -52,7 +52,7 @@ class FtRtdeInputEnable : public ExternalFtSensorCommand {
   void check(const Goal & goal, Check & check) const override
   {
     ExternalFtSensorCommand::check(goal, check);
-    check.polyscope(9);
+    check.polyscope(10);
   }
 };
 

@@ -72,6 +72,9 @@ Error RtdeInterfaces::connection_error(std::string_view what, const std::excepti
   if (const auto * used = dynamic_cast<const ur_rtde::InputsInUseError *>(&error)) {
     return {ErrorCode::robot_in_use, inputs_in_use_message(options_, used->names())};
   }
+  if (dynamic_cast<const ur_rtde::ProgramRunningError *>(&error) != nullptr) {
+    return {ErrorCode::program_stopped, fmt::format("{}: {}", what, error.what())};
+  }
   return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
 }
 

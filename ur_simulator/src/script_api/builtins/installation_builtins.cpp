@@ -6,9 +6,10 @@ namespace ur_simulator::script_api {
 
 namespace {
 
-// Limits of the script manual ("set_tcp", "set_gravity").
+// Limits of the script manual ("set_tcp", "set_gravity", "set_target_payload").
 constexpr double max_tcp_offset = 10.0;  // m
 constexpr double max_gravity = 100.0;    // m/s^2
+constexpr double max_inertia = 133.0;    // kg m^2
 
 void check_mass(ArgumentReader & reader, const RobotContext & robot, double mass)
 {
@@ -45,10 +46,14 @@ Outcome set_target_payload(RobotContext & robot, Arguments arguments)
   check_mass(reader, robot, payload.mass);
   payload.center_of_gravity = reader.vector3(1, "cog");
   payload.inertia = reader.given(2) ? reader.vector6(2, "inertia") : Vector6(Vector6::Zero());
+  reader.require(payload.inertia.cwiseAbs().maxCoeff() <= max_inertia,
+                 fmt::format("the inertia must be within {} kg m^2", max_inertia));
+  reader.require(payload.inertia.head<3>().minCoeff() >= 0.0, "Ixx, Iyy and Izz must not be negative");
   if (!reader) {
     return reader.failure();
   }
   robot.state().payload = payload;
+  robot.access.world.zero_sensor();  // script manual: "automatically zeroed when setting the payload"
   return Value();
 }
 
@@ -107,6 +112,8 @@ Outcome set_gravity(RobotContext & robot, Arguments arguments)
   return Value();
 }
 
+/// `sign`: -1 for the deprecated function, which computes torques with the opposite sign (script manual).
+template <int sign>
 Outcome external_sensor(RobotContext & robot, Arguments arguments)
 {
   ArgumentReader reader(arguments);
@@ -115,7 +122,7 @@ Outcome external_sensor(RobotContext & robot, Arguments arguments)
   sensor.mass = reader.given(1) ? reader.number(1, "sensor_mass") : 0.0;
   reader.require(sensor.mass >= 0.0, fmt::format("sensor_mass must not be negative, is {} kg", sensor.mass));
   if (reader.given(2)) {
-    sensor.measuring_offset = reader.vector3(2, "sensor_measuring_offset");
+    sensor.measuring_offset = sign * reader.vector3(2, "sensor_measuring_offset");
   }
   if (reader.given(3)) {
     sensor.center_of_gravity = reader.vector3(3, "sensor_cog");
@@ -143,10 +150,10 @@ void add_installation_builtins(Library & library, const RobotContextPtr & robot)
                  robot->access.world.zero_sensor();
                  return Value();
                }});
-  for (const char * name : {"enable_external_ft_sensor", "ft_rtde_input_enable"}) {
-    add_robot_builtin(library, robot, name,
-                      {"enable", "sensor_mass", "sensor_measuring_offset", "sensor_cog"}, 1, external_sensor);
-  }
+  const std::vector<urscript::Parameter> sensor{"enable", "sensor_mass", "sensor_measuring_offset",
+                                                "sensor_cog"};
+  add_robot_builtin(library, robot, "ft_rtde_input_enable", sensor, 1, external_sensor<1>);
+  add_robot_builtin(library, robot, "enable_external_ft_sensor", sensor, 1, external_sensor<-1>);
 }
 
 }  // namespace ur_simulator::script_api

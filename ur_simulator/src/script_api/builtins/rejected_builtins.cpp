@@ -44,6 +44,7 @@ RejectedGroup modbus_signals()
               {"modbus_get_signal_status", {"signal_name", "is_secondary_program"}, 1},
               {"modbus_get_time_since_signal_invalid", {"signal_name"}, 1},
               {"modbus_request_update_now", {"signal_name"}, 1},
+              {"modbus_request_update_signal_value", {"signal_name"}, 1},
               {"modbus_reset_connection", {"connection_id", "is_blocking"}, 1},
               {"modbus_send_custom_command", {"IP", "slave_number", "function_code", "data"}, 4},
               {"modbus_set_digital_input_action", {"signal_name", "action"}, 2},

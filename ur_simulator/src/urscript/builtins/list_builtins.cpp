@@ -1,4 +1,5 @@
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "urscript/argument_reader.hpp"
@@ -77,17 +78,18 @@ Outcome inverse(const Matrix & m)
 
 Outcome binary_list_to_integer(CallContext &, Arguments arguments)
 {
-  if (!arguments[0].is(Type::list) || arguments[0].list().size() > 32) {
-    return Failure{"the argument 'l' must be a list of at most 32 bools"};
+  constexpr std::size_t places = 32;  // further elements have no effect (script manual)
+  if (!arguments[0].is(Type::list)) {
+    return Failure{"the argument 'l' must be a list of bools"};
   }
   std::uint32_t bits = 0;
-  std::uint32_t place = 0;
-  for (const Value & bit : arguments[0].list()) {
-    const auto set = to_condition(bit);
+  const List & list = arguments[0].list();
+  for (std::size_t place = 0; place < std::min(places, list.size()); ++place) {
+    const auto set = to_condition(list[place]);
     if (!set) {
       return Failure{"the argument 'l' must be a list of bools"};
     }
-    bits |= (*set ? 1U : 0U) << place++;
+    bits |= (*set ? 1U : 0U) << place;
   }
   return Value(static_cast<std::int32_t>(bits));
 }

@@ -97,6 +97,10 @@ Outcome norm(CallContext &, Arguments arguments)
   if (value.is(Type::pose)) {
     return Value(value.pose().norm());
   }
+  if (value.is(Type::integer)) {
+    const auto bits = static_cast<std::uint32_t>(value.integer());
+    return Value(static_cast<std::int32_t>(value.integer() < 0 ? 0U - bits : bits));
+  }
   if (value.is_number()) {
     return Value(std::abs(*value.number()));
   }

@@ -100,8 +100,8 @@ Outcome textmsg(CallContext & context, Arguments arguments)
   return Value();
 }
 
-// Mode 0: monotonic time, here of the program, the same in every run. Mode 2: time since the epoch. (UR
-// script manual, time(); mode 1 is reserved.)
+// Mode 0: monotonic time since the controller started, the same in every run. Mode 2: time since the epoch.
+// (UR script manual, time(); mode 1 is reserved.)
 Outcome time(CallContext & context, Arguments arguments)
 {
   ArgumentReader reader(arguments);

@@ -92,7 +92,8 @@ Outcome to_num(CallContext &, Arguments arguments)
   errno = 0;
   const double number = std::strtod(text.c_str(), &end);
   const bool overflow = errno == ERANGE && std::isinf(number);
-  const bool whole = text.find_first_of(".eEnN") == std::string::npos;
+  const bool hexadecimal = text.find_first_of("xX") != std::string::npos;
+  const bool whole = text.find_first_of(hexadecimal ? "." : ".eEnN") == std::string::npos;
   reader.require(!text.empty() && *end == '\0', fmt::format("'{}' is not a number", text));
   reader.require(!overflow, fmt::format("'{}' is out of the range of a float", text));
   reader.require(!whole || (number >= std::numeric_limits<std::int32_t>::min() &&
