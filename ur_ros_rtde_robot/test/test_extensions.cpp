@@ -299,6 +299,25 @@ TEST_F(ExtensionsTest, AreStoppedBeforeTheModeOfACommand)
   EXPECT_TRUE(robot->is_current(generation)) << "the control program goes on";
 }
 
+TEST_F(ExtensionsTest, AreStoppedBeforeTheContactDetectionOfACommand)
+{
+  start_with({extension(
+      "turn", "q = get_target_joint_positions()\nq[0] = q[0] + 2\nmovej(q, a=2, v=0.5)\n")});
+  const auto lease = robot->acquire(claim());
+  ASSERT_TRUE(lease);
+  ASSERT_TRUE(robot->control(*lease)->startContactDetection({0.0, 0.0, -1.0, 0.0, 0.0, 0.0}));
+  ExtensionOptions options;
+  options.stop_reason = [&]() -> std::optional<Error> {
+    return robot->latest()->actual_qd[0] > 0.4 ? std::optional(Error{ErrorCode::canceled, "canceled"})
+                                               : std::nullopt;
+  };
+  const auto generation = robot->generation();
+  EXPECT_EQ(robot->run_extension(*lease, "turn", options).error().code, ErrorCode::canceled) << log.text();
+  EXPECT_TRUE(robot->activities().empty());
+  EXPECT_FALSE(robot->is_moving());
+  EXPECT_TRUE(robot->is_current(generation)) << "the control program goes on";
+}
+
 TEST_F(ExtensionsTest, OnlyTheirInputRegistersAreWritten)
 {
   robot = std::make_unique<Robot>(robot_options(), log.function());

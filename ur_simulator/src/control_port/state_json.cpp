@@ -58,6 +58,11 @@ json io_to_json(const Io & io)
           {"tool_communication", tool_communication_to_json(io.tool_communication)}};
 }
 
+json lapses_to_json(const MotionLapses & lapses)
+{
+  return {{"broken_off", lapses.broken_off}, {"moves_from_motion", lapses.moves_from_motion}};
+}
+
 json program_to_json(const ControlPortContext & context)
 {
   const ProgramRunner & runner = context.pendant.runner();
@@ -185,6 +190,7 @@ void add_motion(json & result, const ControlPortContext & context)
                  {"steady", s.steady},
                  {"freedrive", s.freedrive},
                  {"force_mode", context.arm.in_force_mode()},
+                 {"lapses", lapses_to_json(s.lapses)},
                  {"external_sensor", s.external_sensor.enabled}});
 }
 

@@ -144,6 +144,7 @@ void Arm::cancel(MotionId motion)
 {
   if (motion == impl_->last_id) {
     cancel_all();
+    impl_->is_ended_by_program = true;
   }
 }
 
@@ -208,10 +209,22 @@ void Arm::Impl::advance(const TimeStep & time_step)
   }
 }
 
+void Arm::Impl::count_broken_motion(const ControllerState & current)
+{
+  const Motion * running = current_motion();
+  const bool ends =
+      running != nullptr && !is_stop && (is_ended_by_program || (!canceled && running->is_unattended()));
+  if (ends && !has_lapse && moves() && current.runtime_state == RuntimeState::playing) {
+    has_lapse = true;
+    ++lapses.broken_off;
+  }
+}
+
 void Arm::step(ControllerState & state)
 {
   Impl & arm = *impl_;
   arm.state = &state;
+  arm.count_broken_motion(state);
   arm.ramp_speed_scaling(state);
   if (state.robot_mode != RobotMode::running) {
     // The mechanical brakes hold the arm.
@@ -231,6 +244,7 @@ void Arm::step(ControllerState & state)
   state.time_scale_source = path != nullptr && path->limited_by_joint_speed()
                                 ? TimeScaleSource::joint_speed_limit
                                 : TimeScaleSource::none;
+  state.lapses = arm.lapses;
   state.freedrive = arm.in_freedrive();
   state.in_force_mode = arm.force.has_value();
   state.joint_deviation_ratio =

@@ -28,6 +28,7 @@ namespace ur_simulator {
 class PathPlanner;
 
 constexpr double fault_deceleration = 20.0;  ///< rad/s^2
+constexpr double lapse_speed = 0.02;         ///< rad/s, from which on the arm counts as moving
 constexpr double default_force_scaling = 1.0;
 constexpr double default_force_damping = 0.005;  ///< script manual, "force_mode_set_damping"
 
@@ -71,6 +72,9 @@ struct Arm::Impl {
   MotionId last_id = 0;                          ///< of the active motion; the highest in use
   MotionId last_reached_id = skipped_motion_id;  ///< of the last motion that completed
   bool canceled = false;                         ///< the active motion only decelerates
+  bool is_ended_by_program = false;              ///< the active motion: its thread has ended
+  bool has_lapse = false;                        ///< the active motion is counted in `lapses`
+  MotionLapses lapses;
   bool is_stop = false;  ///< the active motion is a stop: leaving its path is no fault
   bool paused = false;
   double start_scaling = 1.0;               ///< of paths, grows from 0 to 1 after the start of a program
@@ -117,7 +121,7 @@ struct Arm::Impl {
   MotionId start_motion(M && motion, bool stop = false)
   {
     active_motion = std::forward<M>(motion);
-    canceled = false;
+    canceled = is_ended_by_program = has_lapse = false;
     is_stop = stop;
     return ++last_id;
   }
@@ -141,6 +145,9 @@ struct Arm::Impl {
   StartResult start_path(const Transform & target, double blend_radius, Plan plan);
 
   void ramp_speed_scaling(ControllerState & current);
+  bool moves() const { return setpoint.velocity.cwiseAbs().maxCoeff() > lapse_speed; }
+  /// Counts a motion of the running program that ends while the arm moves.
+  void count_broken_motion(const ControllerState & current);
   /// The time that passes for the active motion in this cycle.
   TimeStep time_step(const ControllerState & current) const;
   void advance(const TimeStep & time_step);

@@ -34,6 +34,7 @@ StartResult Arm::Impl::start_path(const Transform & target, double blend_radius,
   if (planner.overlaps(target, blend_radius)) {
     return skipped_motion_id;
   }
+  lapses.moves_from_motion += moves() && !planner.blends() ? 1 : 0;
   return start_motion(plan(planner));
 }
 

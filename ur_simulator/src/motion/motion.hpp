@@ -20,6 +20,8 @@ class Motion {
   virtual bool finished() const = 0;
   /// Decelerates along the path to standstill; the motion is then finished.
   virtual void decelerate() = 0;
+  /// True when its call has returned and it goes on, to be followed by another motion.
+  virtual bool is_unattended() const { return false; }
   /// True if the setpoint is the actual joint position, as under torque control, and not the target of the
   /// servo loops.
   virtual bool controls_actual_joints() const { return false; }

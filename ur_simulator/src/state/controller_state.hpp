@@ -74,6 +74,12 @@ struct ExternalSensor {
   Vector3 center_of_gravity = Vector3::Zero();  ///< centre of gravity of the sensor in the flange frame, m
 };
 
+/// What may be a protective stop on a robot ("C204A3: sudden stop"), and is only counted here.
+struct MotionLapses {
+  std::uint32_t broken_off = 0;         ///< the program has ended a motion, and started no other at once
+  std::uint32_t moves_from_motion = 0;  ///< paths that began while the arm moved, and not in a blend
+};
+
 struct JointState {
   Vector6 position = Vector6::Zero();      ///< rad
   Vector6 velocity = Vector6::Zero();      ///< rad/s
@@ -97,6 +103,7 @@ struct ControllerState {
   std::uint64_t cycle = 0;
   double timestamp = 0.0;  ///< simulated time since start, cycle * cycle time, s
 
+  MotionLapses lapses;
   JointState target;
   JointState actual;  ///< without noise
   Readings measured;  ///< the same with noise: what clients and programs see

@@ -205,5 +205,48 @@ TEST(RejectedBuiltinTest, FailsWithItsReason)
             "set_pos: only PolyScope's simulation mode places the arm");
 }
 
+struct Lapse {
+  const char * name;
+  const char * program;
+  std::uint32_t broken_off, moves_from_motion;
+};
+
+class LapsesTest : public ::testing::TestWithParam<Lapse> {};
+
+TEST_P(LapsesTest, AreCounted)
+{
+  ScriptFixture fixture;
+  fixture.state.runtime_state = RuntimeState::playing;
+  EXPECT_EQ(fixture.error_of(fmt::format("def test():\n{}\nend", GetParam().program)), "");
+  EXPECT_EQ(fixture.state.lapses.broken_off, GetParam().broken_off);
+  EXPECT_EQ(fixture.state.lapses.moves_from_motion, GetParam().moves_from_motion);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , LapsesTest,
+    ::testing::Values(
+        Lapse{"ended_stream", " speedj([0.5,0,0,0,0,0], 2, 0.5)\n sleep(0.5)", 1, 0},
+        Lapse{"stopped_stream", " speedj([0.5,0,0,0,0,0], 2, 0.5)\n stopj(2)\n sleep(0.5)", 0, 0},
+        Lapse{"killed_stream",
+              " thread stream():\n  while True:\n   speedj([0.5,0,0,0,0,0], 2, 0.002)\n  end\n end\n"
+              " t = run stream()\n sleep(0.5)\n kill t\n sleep(0.5)",
+              1, 0},
+        Lapse{"killed_and_stopped_stream",
+              " thread stream():\n  while True:\n   speedj([0.5,0,0,0,0,0], 2, 0.002)\n  end\n end\n"
+              " t = run stream()\n sleep(0.5)\n kill t\n stopj(2)\n sleep(0.5)",
+              0, 0},
+        Lapse{"move_from_motion",
+              " q = get_target_joint_positions()\n speedj([0.5,0,0,0,0,0], 2, 0.5)\n movej(q, v=0.5)", 0, 1},
+        Lapse{"move_from_rest",
+              " q = get_target_joint_positions()\n speedj([0.5,0,0,0,0,0], 2, 0.5)\n stopj(2)\n movej(q, "
+              "v=0.5)",
+              0, 0},
+        Lapse{"blend",
+              " q = get_target_joint_positions()\n q[0] = q[0] + 0.5\n movej(q, v=0.5, r=0.05)\n q[1] = q[1] "
+              "+ 0.2\n "
+              "movej(q, v=0.5)",
+              0, 0}),
+    [](const auto & info) { return info.param.name; });
+
 }  // namespace
 }  // namespace ur_simulator

@@ -17,6 +17,7 @@ class PathPlanner {
   PathPlanner(const RobotModel & model, const TcpKinematics & kinematics, const Setpoint & setpoint,
               double cycle_time, const PathMotion * previous);
 
+  bool blends() const { return previous_ != nullptr; }
   /// Start of the next path: the target of the previous path, or the current TCP pose.
   Transform start() const;
   /// True if a path to this TCP pose with this blend radius (m) would begin or end inside the previous blend.

@@ -20,6 +20,7 @@ class JointServoMotion final : public Motion {
   std::optional<MotionFault> advance(const TimeStep & time_step, Setpoint & setpoint) override;
   bool call_complete() const override { return time_left_ <= 0.0; }
   bool finished() const override { return finished_; }
+  bool is_unattended() const override { return call_complete(); }
   void decelerate() override { decelerating_ = true; }
 
  private:

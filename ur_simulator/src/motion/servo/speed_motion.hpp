@@ -15,6 +15,7 @@ class SpeedMotion : public Motion {
  public:
   bool call_complete() const final { return call_complete_; }
   bool finished() const final { return finished_; }
+  bool is_unattended() const final { return call_complete_ && target_.isZero(0.0); }
   /// Decelerates to standstill, at min_takeover_deceleration at least.
   void decelerate() final;
 
