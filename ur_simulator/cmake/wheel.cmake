@@ -14,5 +14,7 @@ set(fmt_library fmt::fmt-header-only)
 find_library(UR_SIMULATOR_YAML_LIBRARY libyaml-cpp.a REQUIRED)
 set(yaml_library ${UR_SIMULATOR_YAML_LIBRARY})
 # Without unused sections and with a shared libgcc, which every Linux has, the program needs glibc 2.34, not that
-# of the build machine.
-add_link_options(-static-libstdc++ LINKER:--gc-sections LINKER:--strip-all)
+# of the build machine. A section is used if a shared library could refer to it: the program exports nothing.
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/no_exports.map "{ local: *; };\n")
+add_link_options(-static-libstdc++ LINKER:--gc-sections LINKER:--strip-all
+                 LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/no_exports.map)
