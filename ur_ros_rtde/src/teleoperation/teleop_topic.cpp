@@ -40,12 +40,13 @@ std::string TeleopTopic::Latency::text() const
 }
 
 TeleopTopic::TeleopTopic(std::string topic, CommandHost & host, const StreamOptions & options,
-                         std::unique_ptr<TargetFollower> follower, LogFunction log)
+                         std::unique_ptr<TargetFollower> follower, const LogFunction & log,
+                         TeleopReports::Publish publish)
     : topic_(std::move(topic)),
       host_(host),
       options_(options),
       follower_(std::move(follower)),
-      log_(std::move(log)),
+      reports_(topic_, options.timeout, log, std::move(publish)),
       thread_([this](const std::stop_token & stop) { serve(stop); })
 {
 }
@@ -88,14 +89,14 @@ void TeleopTopic::on_message(Expected<StreamTarget> target, const rcl_cxx::Messa
   {
     const std::lock_guard lock(mutex_);
     Message next = following(std::move(target), info, sample);
-    if (!next.session.is_logged && is_known(next)) {
+    if (!next.session.is_reported && is_known(next)) {
       hindrance = next.session.hindrance;
-      next.session.is_logged = true;
+      next.session.is_reported = true;
     }
     newest_ = std::move(next);
   }
   changed_.notify_all();
-  log_hindrance(hindrance);
+  report(hindrance);
 }
 
 TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const rcl_cxx::MessageInfo & info,
@@ -128,7 +129,7 @@ TeleopTopic::Message TeleopTopic::following(Expected<StreamTarget> target, const
   next.session = before;
   next.session.hindrance = hindrance_of_following(next, was_stopped);
   if (next.session.hindrance != before.hindrance) {
-    next.session.is_logged = false;
+    next.session.is_reported = false;
   }
   if (next.session.may_start() && !before.may_start()) {
     next.session.stops = host_.stops();
@@ -199,7 +200,7 @@ void TeleopTopic::serve(const std::stop_token & stop)
     if (outcome.code() != ErrorCode::timeout) {
       served = require_pause(served, publisher);
     }
-    log_end(outcome, latency);
+    reports_.ended(outcome, latency.text());
   }
 }
 
@@ -241,10 +242,12 @@ Outcome TeleopTopic::run_session(std::uint64_t session, Latency & latency)
       lease_ = std::move(*lease);
       stop_request = stop_request_;
     }
-    log_(LogLevel::info, fmt::format("{}: teleoperation started", topic_));
+    reports_.started();
     Run run(RunContext{host_.robot(), stop_request, &lease_});
     const Activities before = host_.robot().activities() & outlasting_modes;
-    const Outcome outcome = settle(follow(run, session, latency), before);
+    const Error why = follow(run, session, latency);
+    reports_.stopping(why);
+    const Outcome outcome = settle(why, before);
     lease_.release();
     return outcome;
   } catch (const RobotError & error) {
@@ -313,41 +316,23 @@ Status TeleopTopic::set_target(TargetStream & stream, const Message & message, s
                         : tl::unexpected(message.target.error());
 }
 
-void TeleopTopic::log_end(const Outcome & outcome, const Latency & latency) const
+void TeleopTopic::report(Hindrance hindrance) const
 {
-  if (outcome.code() == ErrorCode::timeout || outcome.code() == ErrorCode::shutdown) {
-    log_(LogLevel::info,
-         fmt::format("{}: teleoperation ended: {}; {}", topic_, outcome.message(), latency.text()));
-    return;
+  switch (hindrance) {
+    case Hindrance::none:
+      break;
+    case Hindrance::stop:
+      reports_.ignored(stopped_by_the_driver());
+      break;
+    case Hindrance::publisher:
+      reports_.hindered(
+          "their publisher may have been there before the last session ended, or before the driver");
+      break;
+    case Hindrance::gap:
+      reports_.hindered(
+          fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout));
+      break;
   }
-  log_ignored({outcome.code(), outcome.message()});
-}
-
-void TeleopTopic::log_ignored(const Error & why) const
-{
-  log_(LogLevel::warn,
-       fmt::format("{}: messages are ignored: {} ({} {}); teleoperation can start after {:.3g} s without "
-                   "messages",
-                   topic_, why.message, to_string(why.code), static_cast<int>(why.code), options_.timeout));
-}
-
-void TeleopTopic::log_hindrance(Hindrance hindrance) const
-{
-  if (hindrance == Hindrance::none) {
-    return;
-  }
-  if (hindrance == Hindrance::stop) {
-    log_ignored(stopped_by_the_driver());
-    return;
-  }
-  const std::string why =
-      hindrance == Hindrance::publisher
-          ? "their publisher may have been there before the last session ended, or before the driver"
-          : fmt::format("there was none for more than {:.3g} s while they moved the arm", options_.timeout);
-  log_(LogLevel::warn,
-       fmt::format("{}: messages are ignored: {}; teleoperation starts with a message that commands no "
-                   "motion: a zero twist, or twice the same target at the position of the arm",
-                   topic_, why));
 }
 
 }  // namespace ur_ros_rtde

@@ -9,10 +9,10 @@
 #include <string>
 #include <thread>
 
+#include "teleoperation/teleop_reports.hpp"
 #include "ur_ros_rtde/detail/stop_request.hpp"
 #include "ur_ros_rtde/plugin_host.hpp"
 #include "ur_ros_rtde/streaming.hpp"
-#include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/robot.hpp"
 
 namespace ur_ros_rtde {
@@ -26,12 +26,13 @@ namespace ur_ros_rtde {
 /// or that was stopped since, was interrupted, and one that was there before this object, or beside the one
 /// that was stopped, has begun without it: neither a hung program that goes on nor a restarted driver may
 /// move the arm. Their next session starts with a message that commands no motion (TargetFollower::moves).
-/// The start and the end of each session are logged once.
+/// The start and the end of each session are reported once.
 class TeleopTopic {
  public:
   /// `topic` is the resolved name: "/servo_joint". `host` outlives this object.
   TeleopTopic(std::string topic, CommandHost & host, const StreamOptions & options,
-              std::unique_ptr<TargetFollower> follower, LogFunction log);
+              std::unique_ptr<TargetFollower> follower, const LogFunction & log,
+              TeleopReports::Publish publish);
   /// Ends the session and joins the thread.
   ~TeleopTopic();
   TeleopTopic(const TeleopTopic &) = delete;
@@ -64,7 +65,7 @@ class TeleopTopic {
     bool follows_pause = false;        ///< of the publisher (has_paused)
     bool needs_pause = false;          ///< the next session: this one did not end for lack of messages
     Hindrance hindrance{};             ///< unless it has been started
-    bool is_logged = false;            ///< its hindrance
+    bool is_reported = false;          ///< its hindrance
     bool may_start() const { return number > 0 && hindrance == Hindrance::none; }
   };
 
@@ -108,15 +109,13 @@ class TeleopTopic {
   /// Without further messages, a mode that was active before goes on, as after a motion that succeeds.
   Outcome settle(const Error & why, Activities active_before) const;
   Message newest() const;
-  void log_hindrance(Hindrance hindrance) const;
-  void log_ignored(const Error & why) const;
-  void log_end(const Outcome & outcome, const Latency & latency) const;
+  void report(Hindrance hindrance) const;
 
   const std::string topic_;
   CommandHost & host_;
   const StreamOptions options_;
   const std::unique_ptr<TargetFollower> follower_;
-  const LogFunction log_;
+  const TeleopReports reports_;
   const Clock::time_point created_ = Clock::now();
 
   mutable std::mutex mutex_;

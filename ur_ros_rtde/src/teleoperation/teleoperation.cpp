@@ -5,9 +5,14 @@
 namespace ur_ros_rtde {
 
 Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log)
-    : joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log),
-      poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log),
-      twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log),
+    : states_(host.node().create_publisher<TeleopReports::State>("teleoperation",
+                                                                 rcl_cxx::QoS::transient_local(10))),
+      joints_(host.node().resolve_topic_name("servo_joint"), host, options, follow_joints(options), log,
+              publish_state(host)),
+      poses_(host.node().resolve_topic_name("servo_pose"), host, options, follow_poses(options), log,
+             publish_state(host)),
+      twists_(host.node().resolve_topic_name("twist"), host, options, follow_twists(options), log,
+              publish_state(host)),
       group_(host.node().create_callback_group())
 {
   // A lost message is not worth a retransmission.
@@ -30,6 +35,14 @@ Teleoperation::Teleoperation(CommandHost & host, const StreamOptions & options, 
         twists_.on_message(twist_target(m, host.options().tf_prefix), info);
       },
       group_);
+}
+
+TeleopReports::Publish Teleoperation::publish_state(CommandHost & host) const
+{
+  return [this, &host](TeleopReports::State state) {
+    state.stamp = host.node().now();
+    states_->publish(state);
+  };
 }
 
 void Teleoperation::stop(const Error & why)

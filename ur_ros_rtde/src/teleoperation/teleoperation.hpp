@@ -10,7 +10,7 @@
 
 namespace ur_ros_rtde {
 
-/// The topics servo_joint, servo_pose and twist.
+/// The topics servo_joint, servo_pose and twist, and `teleoperation`, which tells their state.
 class Teleoperation {
  public:
   Teleoperation(CommandHost & host, const StreamOptions & options, const LogFunction & log);
@@ -22,6 +22,9 @@ class Teleoperation {
   void close();
 
  private:
+  TeleopReports::Publish publish_state(CommandHost & host) const;
+
+  const rcl_cxx::Publisher<TeleopReports::State>::SharedPtr states_;
   TeleopTopic joints_, poses_, twists_;
   rcl_cxx::CallbackGroup::SharedPtr group_;
   rcl_cxx::Subscription<sensor_msgs::msg::JointState>::SharedPtr joint_messages_;

@@ -16,8 +16,8 @@ from streams import STREAM_PARAMETERS, TIMEOUT, joint_message, log_lines, pause,
 from support import FEW_PLUGINS, HOME, JOINTS, REAL_TIME_FACTOR, wait_for
 from trajectories import TargetRecorder
 
-from ur_ros_rtde_msgs.action import ForceMode, MoveJ
-from ur_ros_rtde_msgs.msg import ActiveModes, ErrorCode
+from ur_ros_rtde_msgs.action import ForceMode, MoveJ, Stop
+from ur_ros_rtde_msgs.msg import ActiveModes, ErrorCode, TeleoperationState
 
 MEASURES_TIME = True
 PLUGINS = FEW_PLUGINS
@@ -243,6 +243,24 @@ def test_an_invalid_message_ends_control_by_the_topic_and_is_logged_once(robot, 
         assert get_joint_speed(robot) < 0.01
     assert len(log_lines(driver, warning)) == before + 1 and text in log_lines(driver, warning)[-1]
     assert get_joint_state(robot).position[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_state_of_a_topic_is_published(robot, simulator):
+    states = robot.subscribe(TeleoperationState, "teleoperation", transient_local=True)
+    known = len(robot.messages_until_now(states))
+
+    def new():
+        return [(state.topic, state.state, state.error_code) for state in list(states)[known:]]
+
+    with Publisher(robot, TwistStamped, "twist", lambda t: twist_message("base", -0.05)):
+        wait_for(lambda: not simulator.is_at_rest(), 10.0, "a motion")
+        assert new() == [("/twist", TeleoperationState.ACTIVE, 0)]
+        robot.send(Stop, "stop").succeeded()
+        wait_for(lambda: len(new()) == 3, 10.0, "the end of the session")
+        assert simulator.is_at_rest()
+    assert new()[1:] == [("/twist", TeleoperationState.STOPPING, ErrorCode.PREEMPTED), ("/twist", TeleoperationState.IDLE, ErrorCode.PREEMPTED)]
+    pause()
+    robot.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
 
 
 def test_the_latency_from_message_to_command_is_logged(robot, driver):
