@@ -16,7 +16,7 @@ KINDS = {"command": ("own_action", "command"), "dashboard": ("dashboard",), "ext
 DESCRIPTIONS = {"command": "Turns wrist 3 by an angle and back",
                 "dashboard": "Shows a text on the teach pendant and asks for the robot mode",
                 "extension": "Turns wrist 3 by an angle, by a program on the controller"}
-ROBOT_MEMBERS = ("close", "modes", "record", "start", "state")  # of ur_ros_rtde.Robot, whose other methods are the commands
+ROBOT_MEMBERS = ("close", "modes", "record", "start", "state", "stream")  # of ur_ros_rtde.Robot, whose other methods are the commands
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 

@@ -4,6 +4,7 @@ import pathlib
 import re
 import tempfile
 
+DRIVER_PARAMETERS = ["stream_timeout:=1.0"]  # the pauses of a busy host are shorter
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "use" / "python.md"
 
 

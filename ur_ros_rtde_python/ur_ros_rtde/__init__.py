@@ -9,10 +9,10 @@ Units are SI units: rad, m, s, N, Nm. rclpy is imported when a Robot is created.
 """
 
 from .conversions import pose, trajectory
-from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout, UnknownCommand
+from .errors import CommandFailed, NoDriver, Rejected, RobotError, StreamEnded, Timeout, UnknownCommand
 from .goal import Goal, wait_for_all
 from .recording import Recording, read_recording
 from .robot import Robot
 
-__all__ = ["CommandFailed", "Goal", "NoDriver", "Recording", "Rejected", "Robot", "RobotError", "Timeout", "UnknownCommand", "pose",
-           "read_recording", "trajectory", "wait_for_all"]
+__all__ = ["CommandFailed", "Goal", "NoDriver", "Recording", "Rejected", "Robot", "RobotError", "StreamEnded", "Timeout", "UnknownCommand",
+           "pose", "read_recording", "trajectory", "wait_for_all"]

@@ -43,9 +43,12 @@ class _Coded(RobotError):
         self.remedy = REMEDIES.get(self.name, "")
         super().__init__(f"{command}: {message} ({self.name})")
 
+    def __reduce__(self) -> Any:  # for another process
+        return type(self), (self.command, self.code, self.message)
+
 
 class Rejected(_Coded):
-    """A goal that was not accepted. Nothing has moved.
+    """A goal or a setpoint that was not accepted: nothing moves because of it.
 
     `field`, `value` and `limit` are None if the message names none.
     """
@@ -58,7 +61,7 @@ class Rejected(_Coded):
         self.value = float(found["value"]) if found else None
         self.limit = found["limit"].strip() if found else None
 
-    def __reduce__(self) -> Any:  # for another process
+    def __reduce__(self) -> Any:
         return type(self), (self.command, self.code, self.message, self.field)
 
 
@@ -74,6 +77,10 @@ class CommandFailed(_Coded):
 
     def __reduce__(self) -> Any:
         return type(self), (self.command, self.result)
+
+
+class StreamEnded(_Coded):
+    """A stream of setpoints that has ended before the end of its block. The message says why; the arm decelerates or is at standstill."""
 
 
 class NoDriver(RobotError, ConnectionError):

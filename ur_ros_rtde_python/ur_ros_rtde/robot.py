@@ -16,6 +16,7 @@ from .goal import Goal
 from .modes import Modes
 from .recording import Recording
 from .state import State
+from .streams import Streams
 
 
 class Robot(Commands):
@@ -24,8 +25,8 @@ class Robot(Commands):
     `namespace` is that of the driver. `timeout` (s) limits the waits for the driver, its responses and its samples. A goal that takes
     longer than `result_timeout` (s) is canceled.
 
-    Use it in a `with` statement. At the end, running goals are canceled and the arm is at standstill. In the main thread, SIGTERM and
-    SIGHUP end the program like Ctrl-C, unless it has handlers of its own.
+    Use it in a `with` statement. At the end, running goals are canceled, streams end, and the arm is at standstill. In the main thread,
+    SIGTERM and SIGHUP end the program like Ctrl-C, unless it has handlers of its own.
     """
 
     def __init__(self, namespace: str = "", *, timeout: float = 5.0, result_timeout: float = 600.0):
@@ -36,6 +37,7 @@ class Robot(Commands):
         self.start = StartedCommands(connection, goals)
         self.state = State(connection)
         self.modes = Modes(connection, self, self.start)
+        self.stream = Streams(connection)
         self._signals = _EndBySignal()
         atexit.register(self.close)
 
@@ -48,11 +50,12 @@ class Robot(Commands):
         return Recording(self._connection, file, fields, frequency)
 
     def close(self) -> None:
-        """Cancels the running goals, waits until they have ended, and removes the node."""
+        """Ends streams, cancels the running goals, waits until the arm is at standstill, and removes the node."""
         atexit.unregister(self.close)
         try:
             with own_signals():
                 try:
+                    self.stream.close()
                     running = list(self._goals)
                     for goal in running:
                         with contextlib.suppress(RobotError):
