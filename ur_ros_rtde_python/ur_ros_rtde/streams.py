@@ -12,7 +12,7 @@ from .connection import Connection, end_even_if_interrupted, ending, own_signals
 from .conversions import JOINT_COUNT, interface, kinds_of, numbers, plain
 from .errors import Rejected, RobotError, StreamEnded
 from .teleoperation import Teleoperation
-from .teleoperation_log import TIMEOUT
+from .teleoperation_state import TIMEOUT
 
 INVALID_GOAL = 1  # of ur_ros_rtde_msgs/msg/ErrorCode
 

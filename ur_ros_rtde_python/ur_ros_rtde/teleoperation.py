@@ -11,7 +11,7 @@ from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT, CHECK_PERIOD, LOOK_PERI
 from .connection import Connection, until
 from .conversions import interface
 from .errors import NoDriver, Rejected, RobotError, StreamEnded, Timeout
-from .teleoperation_log import TIMEOUT, End, TeleoperationLog, stamp_of
+from .teleoperation_state import TIMEOUT, End, TeleoperationState, stamp_of
 
 BUSY = 2  # of ur_ros_rtde_msgs/msg/ErrorCode
 PAUSE = 1.5  # times stream_timeout, before the first message: the driver ignores those that follow a session without a pause
@@ -29,7 +29,7 @@ class Teleoperation:
         self._lock = threading.RLock()
         self._is_open = False
         self._timeout = self._stream_timeout()
-        self._log = TeleoperationLog(connection, topic)
+        self._state = TeleoperationState(connection, topic)
         newest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # does not wait for subscribers
         self._publisher = connection.node.create_publisher(interface(kind), topic, newest_only)
         self._driver: frozenset[bytes] = frozenset()  # its endpoints: one that has been started again has others
@@ -38,24 +38,24 @@ class Teleoperation:
 
     def start(self, hold: Callable[[], Any]) -> None:
         """Publishes a message that commands no motion until the session has started. `hold` returns it, with the stamp of the state."""
-        connection, log = self._connection, self._log
+        connection, state = self._connection, self._state
         if not connection.until(self._publisher.get_subscription_count, connection.timeout):
             raise NoDriver(f"no driver subscribes to {connection.full_name(self._topic)} within {connection.timeout:g} s")
         self._driver = connection.publishers("driver_state")
         time.sleep(PAUSE * self._timeout)
         message = hold()
-        log.since = stamp_of(message.header)
+        state.since = stamp_of(message.header)
         end = time.monotonic() + connection.timeout
-        while not log.has_started:
-            if log.end is not None:
-                raise Rejected(self._name, *log.end)
-            if log.is_in_use:
+        while not state.has_started:
+            if state.end is not None:
+                raise Rejected(self._name, *state.end)
+            if state.is_in_use:
                 raise Rejected(self._name, BUSY, f"another program moves the arm with {connection.full_name(self._topic)}")
             if time.monotonic() > end:
-                raise Timeout(f"{self._name}: the driver did not report the start of teleoperation within {connection.timeout:g} s. "
-                              "See its log; it has to be published on /rosout with the level INFO")
+                raise Timeout(f"{self._name}: the driver did not report the start of teleoperation within {connection.timeout:g} s: "
+                              "see its log")
             self._publish(message)
-            until(lambda: log.has_started or log.end, HOLD_PERIOD * self._timeout, 0.001)
+            until(lambda: state.has_started or state.end, HOLD_PERIOD * self._timeout, 0.001)
         self._is_open = True
         self.publish(message)
 
@@ -77,9 +77,9 @@ class Teleoperation:
     def end(self) -> End | None:
         """Returns why the session has ended before stop(), or ends because the next message is late."""
         gap = time.monotonic() - self._published_at
-        if self._log.end is None and self._is_open and gap > self._timeout:
+        if self._state.end is None and self._is_open and gap > self._timeout:
             return TIMEOUT, f"no setpoint was sent for {gap:.3g} s, at most {self._timeout:g} s are allowed (stream_timeout)"
-        return self._log.end
+        return self._state.end
 
     def stop(self, brake: Any) -> None:
         """Returns when the driver has reported the end, which it does at standstill. May be called again.
@@ -87,16 +87,16 @@ class Teleoperation:
         `brake` is a message that decelerates the arm, or None: it decelerates after `stream_timeout` without messages."""
         with self._lock:
             is_in_time = time.monotonic() - self._published_at < BRAKE_TIME * self._timeout
-            if brake is not None and is_in_time and self._is_open and self._log.end is None:
+            if brake is not None and is_in_time and self._is_open and self._state.end is None:
                 with contextlib.suppress(RobotError):
                     self._publish(brake)
             self._is_open = False
-        if self._log.has_started:
+        if self._state.has_started:
             self._connection.over_open_connection(self._wait_for_end)
 
     def remove(self) -> None:
         """Removes publisher and subscription."""
-        self._log.close()
+        self._state.close()
         with contextlib.suppress(RobotError):
             self._connection.in_executor(lambda: self._connection.node.destroy_publisher(self._publisher))
 
@@ -115,15 +115,15 @@ class Teleoperation:
 
     def _wait_for_end(self, connection: Connection) -> None:
         is_own = connection is self._connection
-        log = self._log if is_own else TeleoperationLog(connection, self._topic, self._log.since)
+        state = self._state if is_own else TeleoperationState(connection, self._topic, self._state.since)
         seen = time.monotonic()
         timeout = seen + CANCEL_TIMEOUT
-        while not until(lambda: log.end, CHECK_PERIOD):
+        while not until(lambda: state.is_at_rest, CHECK_PERIOD):
             now = time.monotonic()
             seen = now if self._is_served(connection) else seen
             if now - seen > LOSS_TIME:
                 raise NoDriver(loss(self._name))
             if now > timeout:
                 raise Timeout(f"{self._name}: the driver did not report standstill within {CANCEL_TIMEOUT:g} s")
-        if log.end is not None and "standstill is not confirmed" in log.end[1]:
-            raise StreamEnded(self._name, *log.end)
+        if state.end is not None and "standstill is not confirmed" in state.end[1]:
+            raise StreamEnded(self._name, *state.end)
