@@ -116,8 +116,15 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
-  const auto started =
-      interfaces_.start_control(receiver_.version().value_or(ControllerVersion{}), stop_.get_token());
+  const auto start = [this] {
+    return interfaces_.start_control(receiver_.version().value_or(ControllerVersion{}), stop_.get_token());
+  };
+  auto started = start();
+  // A program has begun in between. After the end of the control program, it is a foreign one.
+  const bool overtaken = !started && started.error().code == ErrorCode::program_stopped;
+  if (overtaken && state_ != ProgramState::restarting && end_program()) {
+    started = start();
+  }
   if (!started) {
     auto failed = interface_failed(started.error());
     // No effect after inputs_in_use.
