@@ -46,6 +46,7 @@ def hang(simulator):
 
 
 def does_not_move_again(simulator, stream):
+    hang(simulator)
     recorder = TargetRecorder(simulator)
     for _ in range(20):
         with pytest.raises(StreamEnded):
@@ -249,7 +250,7 @@ def test_an_exception_stops_the_arm_before_it_propagates(arm, simulator, error, 
 def test_an_interruption_of_the_start_ends_the_stream(arm, monkeypatch):
     def interrupt(self, message):
         publish(self, message)
-        wait_for(lambda: self._log.has_started, 10.0, "teleoperation")
+        wait_for(lambda: self._state.has_started, 10.0, "teleoperation")
         raise KeyboardInterrupt
 
     publish = teleoperation.Teleoperation._publish

@@ -203,6 +203,7 @@ TEST_F(StopTest, UsesTheDashboardServerWithoutRtde)
   options.watchdog_frequency = 0.0;  // only the stop ends the motion
   make_both(options);
   move_joints();
+  controller.control({{"command", "refuse_connections"}, {"which", "rtde"}});  // standstill is not seen
   controller.control({{"command", "stall_links"}, {"which", "rtde"}});
   ASSERT_TRUE(eventually([&] { return !robot->motion_possible(); }));
   const auto stopped = robot->stop_motion();

@@ -35,7 +35,7 @@ TEST(RtdeReplyTest, IsNotATextMessage)
       "\0\0\0\0",
       16);
   ur_fuzz::ReplyServer server(ur_fuzz::test_address(), 0);
-  server.set_reply(text + package('V', "\x01") + text + text + package('v', version));
+  server.set_reply({}, text + package('V', "\x01") + text + text + package('v', version));
   ur_rtde::RTDE rtde(ur_fuzz::test_address(), server.port());
   rtde.connect();
   EXPECT_TRUE(rtde.negotiateProtocolVersion());

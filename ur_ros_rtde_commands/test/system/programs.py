@@ -157,8 +157,11 @@ class Simulator:
         self.process.kill()
 
     def stop(self):
+        """Ends it. Fails if a motion of the control program was broken off, or a path began in motion: a robot may not forgive that."""
+        lapses = self.state()["lapses"] if self.process.running() else {}
         self._socket.close()
         self.process.stop()
+        assert not any(lapses.values()), lapses
 
 
 def start_node(name, address, *parameters, namespace="", env=None, arguments=(), executable=None):
