@@ -1,6 +1,7 @@
 // Extensions that the controller rejects, with the log messages and the errors of their goals; failing
 // extensions; what is left of an extension that has ended.
 #include <atomic>
+#include <cmath>
 #include <stdexcept>
 #include <thread>
 
@@ -301,8 +302,8 @@ TEST_F(ExtensionsTest, AreStoppedBeforeTheModeOfACommand)
 
 TEST_F(ExtensionsTest, AreStoppedBeforeTheContactDetectionOfACommand)
 {
-  start_with({extension(
-      "turn", "q = get_target_joint_positions()\nq[0] = q[0] + 2\nmovej(q, a=2, v=0.5)\n")});
+  start_with(
+      {extension("turn", "q = get_target_joint_positions()\nq[0] = q[0] + 2\nmovej(q, a=2, v=0.5)\n")});
   const auto lease = robot->acquire(claim());
   ASSERT_TRUE(lease);
   ASSERT_TRUE(robot->control(*lease)->startContactDetection({0.0, 0.0, -1.0, 0.0, 0.0, 0.0}));
@@ -374,6 +375,25 @@ TEST_F(ContactDetectionTest, EndsWithAStop)
   ASSERT_TRUE(eventually([&] { return threads() == before + 2; })) << threads();
   ASSERT_TRUE(robot->stop_motion());
   EXPECT_TRUE(eventually([&] { return threads() == before; })) << threads();
+}
+
+TEST_F(ContactDetectionTest, LeavesTheControlProgramResponsive)
+{
+  make_both();
+  auto pose = robot->latest()->actual_tcp_pose;
+  const double surface = pose[2] - 0.02;
+  controller.control({{"command", "place_surface"}, {"z", surface}});
+  const auto lease = acquire();
+  ASSERT_TRUE(robot->control(lease)->startContactDetection(down));
+  const auto generation = robot->generation();
+  pose[2] = surface - 0.05;
+  ASSERT_TRUE(robot->control(lease)->moveL({pose.begin(), pose.end()}, 0.05, 0.5, true));
+  const auto height = [&] { return robot->latest()->actual_tcp_pose[2]; };
+  ASSERT_TRUE(eventually([&] { return height() < surface; }, 20s));
+  EXPECT_TRUE(eventually([&] { return !robot->is_moving() && std::abs(height() - surface) < 2e-3; }, 20s))
+      << height() - surface;
+  EXPECT_TRUE(robot->control(lease)->readContactDetection());
+  EXPECT_TRUE(robot->is_current(generation)) << "another program is said to run";
 }
 
 }  // namespace
