@@ -81,8 +81,8 @@ def test_clang_tidy_passes_only_without_a_finding_and_without_a_crash(layout, ou
 
 
 def test_the_sources_are_checked_by_each_program(layout, capsys):
-    for name in ("clang-format", "ruff", "mypy"):
+    for name in ("clang-format", "ruff", "mypy", "hadolint"):
         install_program(layout, name, "finding", 1)
     failed = [check.name for check in lint.checks(layout) if not check.ok]
     assert capsys.readouterr().out == "==> Checking the sources\n"
-    assert failed == ["sources: formatting", "sources: ruff", "sources: mypy"]
+    assert failed == ["sources: formatting", "sources: ruff", "sources: mypy", "sources: hadolint"]

@@ -191,9 +191,9 @@ Status MotionStopper::stop_motions(Activities started, const StopOptions & optio
   const bool sends_stop = started.contains_any(motions) || before.operating();
   if (sends_stop) {
     // Two threads that move the arm end the program: the extension first, which decelerates by itself.
-    if (started.contains(Activity::extension) &&
-        !wait_for(program_stop_timeout,
-                  [](const Sample & now) { return now.extension_acknowledgement() == 0.0; })) {
+    if (started.contains(Activity::extension) && !wait_for(program_stop_timeout, [](const Sample & now) {
+          return now.extension_acknowledgement() == 0.0;
+        })) {
       return failure(ErrorCode::timeout, "the extension does not end");
     }
     if (Status sent = send_stop(started, options); !sent) {
