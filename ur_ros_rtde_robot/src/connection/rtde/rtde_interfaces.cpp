@@ -53,8 +53,7 @@ std::string inputs_in_use_message(const RobotOptions & options, const std::vecto
   if (registers_only) {
     who += fmt::format(
         "; or its installation has a fieldbus (EtherNet/IP, PROFINET, MODBUS): switch that off, or start "
-        "this "
-        "driver with register_range:={} (now {})",
+        "this driver with register_range:={} (now {})",
         options.upper_range_registers ? "lower" : "upper", options.upper_range_registers ? "upper" : "lower");
   }
   constexpr std::size_t listed = 4;
@@ -72,10 +71,9 @@ Error RtdeInterfaces::connection_error(std::string_view what, const std::excepti
   if (const auto * used = dynamic_cast<const ur_rtde::InputsInUseError *>(&error)) {
     return {ErrorCode::robot_in_use, inputs_in_use_message(options_, used->names())};
   }
-  if (dynamic_cast<const ur_rtde::ProgramRunningError *>(&error) != nullptr) {
-    return {ErrorCode::program_stopped, fmt::format("{}: {}", what, error.what())};
-  }
-  return {ErrorCode::not_ready, fmt::format("{}: {}", what, printable(error.what()))};
+  const bool overtaken = dynamic_cast<const ur_rtde::ProgramRunningError *>(&error) != nullptr;
+  return {overtaken ? ErrorCode::program_stopped : ErrorCode::not_ready,
+          fmt::format("{}: {}", what, printable(error.what()))};
 }
 
 bool RtdeInterfaces::is_io_open() const
