@@ -45,6 +45,14 @@ def test_the_reference_of_a_command_has_fields_error_codes_and_examples(site):
     assert "CUSTOM" in section(site, "jog")
 
 
+def test_the_menu_has_every_page_in_the_order_of_the_readmes():
+    menu = dict(docs._menu(ROOT))
+    for heading, folder, pattern in docs.SECTIONS:
+        assert sorted(menu[heading]) == sorted(str(page.relative_to(ROOT)) for page in (ROOT / folder).glob(pattern))
+    assert menu["Use"][:2] == ["docs/use/first_day.md", "docs/use/safety.md"]
+    assert menu["Commands"][:2] == ["docs/use/commands/README.md", "docs/use/commands/motion.md"]
+
+
 def test_the_reference_has_every_command(site):
     text = "".join(text_of(page) for page in (site / "reference").glob("actions_*.html"))
     pages = (ROOT / "docs" / "use" / "commands").glob("*.md")
