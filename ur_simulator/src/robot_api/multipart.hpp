@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>  // before rfc7230.hpp of Boost.Beast 1.83 (Ubuntu 24.04), which lacks it
 #include <optional>
 #include <string>
 #include <string_view>
