@@ -30,13 +30,13 @@ find_library(ament_index_cpp ament_index_cpp PATHS "$ENV{ROS_WHEELS_PREFIX}/lib"
 add_library(fuzz_plugin_index STATIC ${REPOSITORY}/ur_ros_rtde/src/plugins/plugin_index.cpp)
 target_include_directories(fuzz_plugin_index PUBLIC ${REPOSITORY}/ur_ros_rtde/src)
 target_include_directories(fuzz_plugin_index SYSTEM PRIVATE $ENV{ROS_WHEELS_PREFIX}/include/ament_index_cpp)
-target_link_libraries(fuzz_plugin_index PUBLIC fmt::fmt tinyxml2::tinyxml2 ${ament_index_cpp})
+target_link_libraries(fuzz_plugin_index PUBLIC fmt::fmt ${TINYXML2_LIBRARY} ${ament_index_cpp})
 
 set(trajectory ${REPOSITORY}/ur_ros_rtde_trajectory)
 add_library(fuzz_description STATIC ${REPOSITORY}/ur_ros_rtde/src/state/description_kinematics.cpp
   ${trajectory}/src/kinematics/arm.cpp ${trajectory}/src/trajectory/limits.cpp)
 target_include_directories(fuzz_description PUBLIC ${REPOSITORY}/ur_ros_rtde/src ${trajectory}/include PRIVATE ${trajectory}/src)
-target_link_libraries(fuzz_description PUBLIC Eigen3::Eigen fmt::fmt tinyxml2::tinyxml2)
+target_link_libraries(fuzz_description PUBLIC Eigen3::Eigen fmt::fmt ${TINYXML2_LIBRARY})
 
 add_fuzz_target(ur_ros_rtde_robot rtde_stream DEPENDS fuzz_robot fuzz_ur_rtde)
 add_fuzz_target(ur_ros_rtde_robot primary_stream DEPENDS fuzz_robot)

@@ -10,7 +10,7 @@ add_module(safety DEPENDS sim_kinematics sim_world)
 add_module(port_map DEPENDS sim_state sim_version)
 add_module(urscript DEPENDS sim_common)
 add_module(script_api DEPENDS sim_port_map sim_version sim_urscript sim_motion sim_world sim_safety sim_dynamics
-           ${xml_library})
+           ${TINYXML2_LIBRARY})
 add_module(log DEPENDS sim_common)
 add_module(client_log)
 add_module(net DEPENDS sim_client_log)
