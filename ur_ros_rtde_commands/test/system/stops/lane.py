@@ -228,6 +228,7 @@ class Lane:
         self._stalls = self._measure_stalls()
         for action, kind, fields in case.kind.before:
             self._send_before(action, messages.load(kind), fields)
+        self._wait_until_commands_have_returned()
         fields = case.kind.fields(case_random(case), self.scene)
         self.fields = fields
         self.trace = Trace(self.simulator)
@@ -388,6 +389,14 @@ class Lane:
             return state["program"]["state"] == "PLAYING" and state["clients"]["rtde_control"] > 0
 
         wait_for(runs, READY_LIMIT, "the control program")
+
+    def _wait_until_commands_have_returned(self) -> None:
+        """The driver rejects a goal of a command whose abandoned goal has not returned: one that never looks, of the case before."""
+        def lines(text: str) -> int:
+            return sum(text in line for line in list(self.driver.lines))
+
+        wait_for(lambda: lines("its command has returned after its result was sent") >= lines("the command did not return after that"),
+                 READY_LIMIT, "the return of an abandoned command")
 
     def _start_over(self) -> None:
         """After a failure that has left the robot or the driver in an unknown state."""
