@@ -11,7 +11,7 @@ from ur_ros_rtde_cli import actions, fields, interface_files, plugins
 
 from .connection import Connection, load
 from .conversions import kinds_of, plain
-from .errors import Rejected
+from .errors import INVALID_GOAL, Rejected
 from .goal import Goal, Progress
 
 Plugin = plugins.Plugin
@@ -107,15 +107,15 @@ def _goal_message(name: str, action: Any, values: tuple[Any, ...], given: dict[s
     kinds = kinds_of(goal)
     known = list(kinds)
     if len(values) > len(known):
-        raise Rejected(name, 1, f"{len(values)} values were given, the fields are: {', '.join(known) or 'none'}")
+        raise Rejected(name, INVALID_GOAL, f"{len(values)} values were given, the fields are: {', '.join(known) or 'none'}")
     twice = next((field for field in known[:len(values)] if field in given), None)
     if twice:
-        raise Rejected(name, 1, f"{twice} was given twice", twice)
+        raise Rejected(name, INVALID_GOAL, f"{twice} was given twice", twice)
     everything = {**dict(zip(known, values, strict=False)), **given}
     try:
         fields.fill(goal, {field: plain(kinds.get(field), value) for field, value in everything.items()})
     except fields.FieldError as error:
-        raise Rejected(name, 1, str(error), fields.field_name(error.path)) from None
+        raise Rejected(name, INVALID_GOAL, str(error), fields.field_name(error.path)) from None
     return goal
 
 

@@ -15,6 +15,8 @@ REMEDIES = {"BUSY": "wait for the running goal, or end it with stop()",
             "LINK_LOST": "check the controller and its network: ur doctor --robot ADDRESS",
             "SAFETY_VIOLATION": "inspect the robot, then make_ready(restart_safety=True)"}
 
+INVALID_GOAL, BUSY, TIMEOUT = 1, 2, 6  # of ur_ros_rtde_msgs/msg/ErrorCode
+
 # The driver's message about a field: "speed is 9 rad/s, it must be above 0 and at most 3.14 rad/s".
 _FIELD = re.compile(r"(?P<field>[a-z]\w*(?:\.\w+|\[\d+\])*)(?: \(\w+\))? (?:is|has) (?P<value>[-+]?(?:\d[\d.]*(?:e[-+]?\d+)?|nan|inf))\b"
                     r".*?, it (?:must be|must have|may be|has to be) (?P<limit>[^:]+)", re.S)

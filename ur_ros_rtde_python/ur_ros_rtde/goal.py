@@ -13,7 +13,7 @@ from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT, CHECK_PERIOD, DriverWat
 
 from .connection import Connection, load, own_signals
 from .conversions import interface
-from .errors import CommandFailed, NoDriver, Rejected, RobotError, Timeout
+from .errors import INVALID_GOAL, CommandFailed, NoDriver, Rejected, RobotError, Timeout
 
 Progress = Callable[[Any], object]
 
@@ -72,7 +72,7 @@ class Goal:
         handle = self._answered.result()
         if not handle.accepted:
             rejection = self._connection.rejection(bytes(handle.goal_id.uuid))
-            raise Rejected(self.name, getattr(rejection, "error_code", 1),
+            raise Rejected(self.name, getattr(rejection, "error_code", INVALID_GOAL),
                           getattr(rejection, "message", "rejected; see the log of the driver for the reason"))
         return self
 

@@ -10,11 +10,8 @@ from ur_ros_rtde_cli import fields
 
 from .connection import Connection, end_even_if_interrupted, ending, own_signals
 from .conversions import JOINT_COUNT, interface, kinds_of, numbers, plain
-from .errors import Rejected, RobotError, StreamEnded
+from .errors import INVALID_GOAL, TIMEOUT, Rejected, RobotError, StreamEnded
 from .teleoperation import Teleoperation
-from .teleoperation_state import TIMEOUT
-
-INVALID_GOAL = 1  # of ur_ros_rtde_msgs/msg/ErrorCode
 
 
 class Stream:

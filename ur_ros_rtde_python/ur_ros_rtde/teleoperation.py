@@ -10,10 +10,9 @@ from ur_ros_rtde_cli.driver_watch import CANCEL_TIMEOUT, CHECK_PERIOD, LOOK_PERI
 
 from .connection import Connection, until
 from .conversions import interface
-from .errors import NoDriver, Rejected, RobotError, StreamEnded, Timeout
-from .teleoperation_state import TIMEOUT, End, TeleoperationState, stamp_of
+from .errors import BUSY, TIMEOUT, NoDriver, Rejected, RobotError, StreamEnded, Timeout
+from .teleoperation_state import End, TeleoperationState, stamp_of
 
-BUSY = 2  # of ur_ros_rtde_msgs/msg/ErrorCode
 PAUSE = 1.5  # times stream_timeout, before the first message: the driver ignores those that follow a session without a pause
 HOLD_PERIOD = 0.25  # times stream_timeout, between the messages until the session has started
 BRAKE_TIME = 0.5  # times stream_timeout, after the last message: a message after the end would start another session

@@ -4,7 +4,6 @@ from typing import Any
 
 from .connection import Connection
 
-TIMEOUT = 6  # of ur_ros_rtde_msgs/msg/ErrorCode
 IDLE, ACTIVE = 0, 1  # of ur_ros_rtde_msgs/msg/TeleoperationState
 
 Stamp = tuple[int, int]

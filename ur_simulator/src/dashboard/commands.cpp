@@ -21,11 +21,6 @@ std::string failed_reply(std::string_view command)
   return fmt::format("Failed to execute: {}", command);
 }
 
-std::string reply_to(const Pendant::Result & result, std::string_view done, std::string_view command)
-{
-  return result ? std::string(done) : failed_reply(command);
-}
-
 /// The file name of the loaded program, without its folder.
 std::string program_file_name(const Pendant & pendant)
 {
@@ -295,6 +290,11 @@ bool starts_with_command(std::string_view line, std::string_view name)
 constexpr std::string_view blanks = " \t";
 
 }  // namespace
+
+std::string reply_to(const Pendant::Result & result, std::string_view done, std::string_view command)
+{
+  return result ? std::string(done) : failed_reply(command);
+}
 
 const Command * find_command(std::string_view line, const PolyscopeVersion & version,
                              std::string_view & argument)

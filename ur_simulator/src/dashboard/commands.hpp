@@ -20,6 +20,9 @@ struct Command {
   PendingReply (*start)(Pendant & pendant, std::string_view argument) = nullptr;
 };
 
+/// `done`, or that the command has failed.
+std::string reply_to(const Pendant::Result & result, std::string_view done, std::string_view command);
+
 // Commands whose reply may take several control cycles.
 PendingReply play(Pendant & pendant, std::string_view argument);
 /// "returns when stopping is completed", "… pausing …" (UR, "Dashboard Server", from CB3 3.3 on).

@@ -12,9 +12,8 @@ PendingReply play(Pendant & pendant, std::string_view)
     pendant.log().error("dashboard", "play was rejected: the operational mode is MANUAL");
     *reply = "Failed to execute: play";
   } else {
-    pendant.play([reply](const Pendant::Result & result) {
-      *reply = result ? "Starting program" : "Failed to execute: play";
-    });
+    pendant.play(
+        [reply](const Pendant::Result & result) { *reply = reply_to(result, "Starting program", "play"); });
   }
   return [reply] { return *reply; };
 }
@@ -32,12 +31,12 @@ PendingReply stop(Pendant & pendant, std::string_view)
 
 PendingReply pause(Pendant & pendant, std::string_view)
 {
-  const bool pauses = pendant.pause().has_value();
-  return [&pendant, pauses]() -> std::optional<std::string> {
-    if (pauses && pendant.state().runtime_state == RuntimeState::pausing) {
+  return [&pendant,
+          reply = reply_to(pendant.pause(), "Pausing program", "pause")]() -> std::optional<std::string> {
+    if (pendant.state().runtime_state == RuntimeState::pausing) {
       return std::nullopt;
     }
-    return pauses ? "Pausing program" : "Failed to execute: pause";
+    return reply;
   };
 }
 

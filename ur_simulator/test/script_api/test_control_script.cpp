@@ -268,6 +268,16 @@ struct ContactDuringMotionTest : ControlScriptTest {
     command(start_contact_detection);
   }
 
+  void begin_to_move_into_the_table()
+  {
+    constexpr std::int32_t move_l = 3;
+    Vector6 target = fixture.state.target_tcp_pose;
+    target[2] -= 0.06;
+    parameters(target, {0.05, 0.5});
+    fixture.state.inputs.integers[1] = 1;
+    command(move_l);
+  }
+
   void wait_for_contact()
   {
     const auto & messages = fixture.host.messages;
@@ -307,12 +317,7 @@ TEST_F(ContactDuringMotionTest, EndsAStream)
 TEST_F(ContactDuringMotionTest, IsNoticedDuringACommand)
 {
   constexpr std::int32_t read_contact_detection = 64;
-  constexpr std::int32_t move_l = 3;
-  Vector6 target = fixture.state.target_tcp_pose;
-  target[2] -= 0.06;
-  parameters(target, {0.05, 0.5});
-  fixture.state.inputs.integers[1] = 1;
-  command(move_l);
+  begin_to_move_into_the_table();
 
   // A late host clears its command only long after the contact.
   fixture.state.inputs.integers[0] = read_contact_detection;
@@ -340,13 +345,8 @@ TEST_F(ContactDuringMotionTest, IsNoticedInForceMode)
 
 TEST_F(ContactDuringMotionTest, KeepsTheScriptResponsive)
 {
-  constexpr std::int32_t move_l = 3;
   constexpr std::int32_t stop_l = 33;
-  Vector6 target = fixture.state.target_tcp_pose;
-  target[2] -= 0.06;
-  parameters(target, {0.05, 0.5});
-  fixture.state.inputs.integers[1] = 1;
-  command(move_l);
+  begin_to_move_into_the_table();
   wait_for_contact();
   const auto moving = [&] { return fixture.state.target_tcp_speed.norm() > 1e-4; };
   int heartbeat = output(3) / 256;

@@ -34,7 +34,7 @@ class StopRequest {
     return reason_;
   }
 
-  /// The result was sent without the goal's thread, which must not act on the robot any more.
+  /// The result was sent without the goal's thread, which must no longer act on the robot.
   void abandon() { is_abandoned_ = true; }
   bool is_abandoned() const { return is_abandoned_; }
 
