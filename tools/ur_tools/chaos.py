@@ -24,6 +24,7 @@ from .layout import PROGRAM, ROOT, SANITIZERS, Layout
 from .processes import Programs
 
 SOAK_MINUTES = 30.0
+LATE_THREADS = 8  # cases of the stop property test with the seeds -1, -2, ...: see stops/cases.py
 FAULT_SECONDS = 60.0  # upper bound of one fault with its recovery and the results of its goals
 
 
@@ -46,8 +47,8 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if options.faults < 0 or options.minutes < 0.0 or not 1 <= options.clients <= 20:
         parser.error("--faults and --minutes cannot be negative, --clients is 1 to 20")
-    if options.stops < 0 or not 1 <= options.lanes <= 16 or any(seed < 0 for seed in options.case):
-        parser.error("--stops and --case cannot be negative, --lanes is 1 to 16")
+    if options.stops < 0 or not 1 <= options.lanes <= 16 or any(seed < -LATE_THREADS for seed in options.case):
+        parser.error(f"--stops cannot be negative, --case not below -{LATE_THREADS}, --lanes is 1 to 16")
     if options.seed is None:
         options.seed = random.SystemRandom().randrange(10**6)
     if options.faults == 0 and options.minutes == 0.0 and not _is_stop_test(options):

@@ -11,6 +11,7 @@ from stops import campaign
 from stops.cases import LATE_THREADS
 
 LOAD = 2.0  # it uses two cores
+JUDGES_STALLS = True  # see stops/stalls.py
 LANES = 2
 CASES = 200
 FIRST_SEED = 26
@@ -34,7 +35,7 @@ def execute(seeds, addresses, log, seconds=SECONDS, is_about_holds=False):
     return run.reports
 
 
-def test_every_goal_is_stopped_by_every_event(addresses, tmp_path):
+def test_random_goals_are_stopped_by_random_events(addresses, tmp_path):
     first = int(os.environ.get("UR_STOP_SEED", FIRST_SEED))
     print(f"seeds from {first}; UR_STOP_SEED selects others")
     assert len(execute(range(first, first + CASES), addresses, tmp_path)) >= LEAST_CASES

@@ -6,7 +6,9 @@ events.py      what ends it
 holds.py       delays threads of the driver, with ptrace
 motion.py      what the arm did, from the trace of the simulator
 stalls.py      for how long the host did not let programs run
-lane.py        a robot with its driver and clients; executes cases
+robot.py       a robot with its driver and clients
+lane.py        executes cases
+report.py      what a case has shown
 properties.py  what has to hold
 campaign.py    distributes cases to lanes, and sums their results up
 """

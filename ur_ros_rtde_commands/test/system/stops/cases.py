@@ -1,5 +1,6 @@
 """A case of the stop property test: everything that is drawn by chance, from one number."""
 
+import math
 from dataclasses import dataclass, replace
 from random import Random
 from typing import Dict, List, Optional, Sequence, Tuple
@@ -15,7 +16,9 @@ PROFILES: Dict[str, Tuple[str, ...]] = {
     "preempt": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "on_busy:=preempt"),
     "urcap": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "control_mode:=control_urcap"),
 }
+WATCHDOG = {"patient": 0.5, "fast": 0.1, "preempt": 0.5, "urcap": 0.5}  # s, after which it ends a program without signs of life
 SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0, "urcap": 2.0}  # s, after which a silent connection is found to be dead
+ENUMERATED = 4  # each fourth case is the next one of all pairs of a goal and an event; the others are drawn by their weights
 HELD = 0.4  # of all cases
 WAITING = 0.4  # of the cases in which a goal may wait for the arm
 ARRIVAL = 0.02  # s, until the driver has received a goal
@@ -77,7 +80,7 @@ def is_possible(kind: GoalKind, event: Event, profile: str) -> bool:
         return False
     if kind.is_topic:  # no goal that could be canceled, preempted or lose its client
         return not (event.needs_client or event.name == "preempted" or event.name.startswith("cancel, then"))
-    waits_for_play = event.name == "program paused" and kind.name == "send_script"
+    waits_for_play = event.name in ("program paused", "dashboard pause") and kind.name == "send_script"
     return not waits_for_play and not (event.name == "preempted" and kind.name in HAND_GUIDED)
 
 
@@ -89,6 +92,8 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     kind = random.choices(possible, [kind.weight for kind in possible])[0]
     events = [event for event in EVENTS if is_possible(kind, event, profile)]
     event = random.choices(events, [event.weight for event in events])[0]
+    if seed % BLOCK % ENUMERATED == 0:
+        kind, event = _enumerated(seed, possible, profile)
     waits = random.random() < 0.8
     delay = random.uniform(0.0, 0.9) if waits else random.uniform(0.0, 0.08)
     second_delay = random.uniform(0.0, 0.3)
@@ -106,6 +111,14 @@ def draw(seed: int, kinds: Sequence[GoalKind], holds: bool = True) -> Case:
     if seed < 0:
         case = _with_late_thread(case, kinds, *LATE_THREADS[-seed - 1])
     return case if holds else replace(case, hold=None)
+
+
+def _enumerated(seed: int, kinds: Sequence[GoalKind], profile: str) -> Tuple[GoalKind, Event]:
+    """Returns each pair of a kind and an event in turn, in an order by chance, so that consecutive seeds differ."""
+    number = seed // (BLOCK * len(PROFILES)) * math.ceil(BLOCK / ENUMERATED) + seed % BLOCK // ENUMERATED
+    pairs = [(kind, event) for kind in kinds for event in EVENTS if is_possible(kind, event, profile)]
+    Random(profile).shuffle(pairs)
+    return pairs[number % len(pairs)]
 
 
 def _with_late_thread(case: Case, kinds: Sequence[GoalKind], kind: str, event: str) -> Case:

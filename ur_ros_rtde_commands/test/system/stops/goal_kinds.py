@@ -55,8 +55,19 @@ class GoalKind:
     runs_script: bool = False  # in place of the control program: not with the URCap; in local control, only the watchdog ends it
     turns: bool = False  # the base joint leads: a stop of the TCP decelerates its rotation, in rad/s^2
     has_corner: bool = False  # in which the arm slows down and accelerates again
+    succeeds_if_ended: bool = False  # a cancel is its regular end
     package: str = "ur_ros_rtde_commands"
     limits: Callable[[Fields], Tuple[float, float]] = lambda _fields: (1.4, 100.0)  # of PATH: acceleration, jerk
+
+    @property
+    def has_pauses(self) -> bool:
+        """In which the arm rests."""
+        return self.space == MODE
+
+    @property
+    def keeps_program(self) -> bool:
+        """A stop leaves the control program running."""
+        return not self.runs_script and self.space != MODE
 
     @property
     def is_streamed(self) -> bool:
@@ -275,7 +286,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified, runs_script=True, has_corner=True),
     GoalKind("speed_j", "speed_j", PACKAGE + "SpeedJ", _speed_j, JOINT, _own),
     GoalKind("speed_l", "speed_l", PACKAGE + "SpeedL", _speed_l, LINEAR, _own),
-    GoalKind("jog", "jog", PACKAGE + "Jog", _jog),
+    GoalKind("jog", "jog", PACKAGE + "Jog", _jog, succeeds_if_ended=True),
     GoalKind("servo_j", "servo_j", PACKAGE + "ServoJ", _servo_j, JOINT, _own),
     GoalKind("servo_l", "servo_l", PACKAGE + "ServoL", _servo_l, LINEAR, _own),
     GoalKind("servo_c", "servo_c", PACKAGE + "ServoC", _servo_c, LINEAR, _own),
@@ -291,11 +302,13 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_until_contact", "move_until_contact", PACKAGE + "MoveUntilContact", _until_contact, deceleration=_unspecified,
              runs_script=True),
     GoalKind("move_until_torque", "move_until_torque", PACKAGE + "MoveUntilForce", _until_force, LINEAR, _own),
-    GoalKind("force_mode", "force_mode", PACKAGE + "ForceMode", _force_mode, MODE, _unspecified),
+    GoalKind("force_mode", "force_mode", PACKAGE + "ForceMode", _force_mode, MODE, _unspecified, succeeds_if_ended=True),
     GoalKind("move_j in force mode", "move_j", PACKAGE + "MoveJ", _move_j, JOINT,
              before=[("force_mode_start", PACKAGE + "ForceMode", FORCE_MODE)]),
-    GoalKind("freedrive", "freedrive", PACKAGE + "Freedrive", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
-    GoalKind("teach_mode", "teach_mode", PACKAGE + "TeachMode", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH),
+    GoalKind("freedrive", "freedrive", PACKAGE + "Freedrive", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH,
+             succeeds_if_ended=True),
+    GoalKind("teach_mode", "teach_mode", PACKAGE + "TeachMode", _no_fields, MODE, _unspecified, around=lambda _scene: PUSH,
+             succeeds_if_ended=True),
     GoalKind("direct_torque", "direct_torque", PACKAGE + "DirectTorque", _torque, MODE, _unspecified),
     GoalKind("send_script", "send_script", PACKAGE + "SendScript", _script, JOINT, _unspecified, runs_script=True),
     GoalKind("move_down_until_force", "move_down_until_force", f"{TUTORIALS}/action/MoveDownUntilForce", _down, package=TUTORIALS),

@@ -3,11 +3,14 @@
 from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
+from support import REAL_TIME_FACTOR
+
 CYCLE = 0.002  # s of the robot
 AT_REST = 1e-4  # rad/s and m/s, of targets
 REST_CYCLES = 10  # a shorter time without motion is a reversal
 DECREASE = 1e-6  # a smaller change of a speed is rounding
 MEASURED_CYCLES = 6  # a shorter deceleration is not measured
+PEAK = 0.98  # of the highest speed
 CREEPING = 2e-3  # rad/s and m/s: a controller may approach the last position in several attempts
 
 
@@ -17,7 +20,6 @@ class Trace:
     def __init__(self, simulator):
         self._simulator = simulator
         self._last = simulator.state()["cycle"]
-        self.first = self._last + 1
         self.published: List[int] = []  # ns since the epoch, of the state after each cycle
         self.speeds: List[Tuple[float, float]] = []  # of the fastest joint, rad/s, and of the TCP, m/s
 
@@ -43,9 +45,12 @@ class Trace:
     def moves(self, index: int) -> bool:
         return max(self.speeds[index]) > AT_REST
 
+    def moves_between(self, begin: int, end: int) -> bool:
+        return any(self.moves(index) for index in range(begin, end))
+
     def delay(self, begin: int, end: int) -> float:
-        """Returns by how much the cycles of a range were late, s: the robot's time then advances in leaps."""
-        gaps = [1e-9 * (b - a) - CYCLE for a, b in zip(self.published[begin:end], self.published[begin + 1:end + 1])]
+        """Returns by how much the cycles of a range were late, s of the robot: its time then advances in leaps."""
+        gaps = [1e-9 * REAL_TIME_FACTOR * (b - a) - CYCLE for a, b in zip(self.published[begin:end], self.published[begin + 1:end + 1])]
         return sum(gap for gap in gaps if gap > 0.5 * CYCLE)
 
 
@@ -77,20 +82,30 @@ def rest_after(trace: Trace, begin: int, end: int, cycles: int = REST_CYCLES) ->
     return None
 
 
-def find_stopping(trace: Trace, event: int, may_begin_until: int, end: int, column: int,
-                  rest_cycles: int = REST_CYCLES) -> Stopping:
-    """Up to the cycle `may_begin_until`, the arm may still do what it was told before the event. The deceleration is that of the leading
-    joint (column 0) or of the TCP (1)."""
+def find_stopping(trace: Trace, event: int, may_begin_until: int, end: int, column: int, rest_cycles: int = REST_CYCLES,
+                  has_pauses: bool = False) -> Stopping:
+    """Up to the cycle `may_begin_until`, an arm that rests since the event may still begin the motion that it was told before, and one
+    whose motion `has_pauses` may go on. The deceleration is that of the leading joint (column 0) or of the TCP (1)."""
     rest = rest_after(trace, event + 1, end, rest_cycles)
-    while rest is not None and any(trace.moves(index) for index in range(rest, min(may_begin_until, end))):
-        rest = rest_after(trace, rest + rest_cycles, end, rest_cycles)
-    again = None if rest is None else next((index for index in range(rest, end) if trace.moves(index)), None)
-    if rest is None or not any(trace.moves(index) for index in range(event, rest)):
+    may_go_on = True
+    while rest is not None and may_go_on and trace.moves_between(rest, min(may_begin_until, end)):
+        may_go_on = has_pauses or not trace.moves_between(event, rest)
+        rest = rest_after(trace, rest + rest_cycles, end, rest_cycles) if may_go_on else rest
+    again = None if rest is None else next((index for index in range(rest, end) if max(trace.speeds[index]) > CREEPING), None)
+    if rest is None or not trace.moves_between(event, rest):
         return Stopping(event, None, rest, again)
     first = _begin_of_creeping(trace, event, rest, column)
     while first > event + 1 and _slower(trace, first - 1, first, column):
         first -= 1
     return Stopping(event, first, rest, again)
+
+
+def last_peak(trace: Trace, stopping: Stopping) -> int:
+    """Returns the last cycle after the event in which the leading joint is nearly at its highest speed: a late setpoint makes the
+    deceleration along a path uneven."""
+    assert stopping.rest is not None
+    speeds = [trace.speeds[index][0] for index in range(stopping.event, stopping.rest + 1)]
+    return stopping.event + max(index for index, speed in enumerate(speeds) if speed >= PEAK * max(speeds))
 
 
 def _begin_of_creeping(trace: Trace, event: int, rest: int, column: int) -> int:

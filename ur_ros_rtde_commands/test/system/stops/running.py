@@ -50,6 +50,11 @@ class RunningGoal:
         self._goal.wait_for_result(RESULT_TIMEOUT)
         return self._goal.result_at
 
+    def outcome(self):
+        """Returns the status and the error code of the result."""
+        status, result = self._goal.wait_for_result(RESULT_TIMEOUT)
+        return status, result.error_code
+
     def check_single_result(self):
         status, _result = self._goal.wait_for_result(RESULT_TIMEOUT)
         states = self._lane.client.get_terminal_states(self._goal)
@@ -85,11 +90,14 @@ class ForeignGoal:
         service = messages.load(self._kind.type).Impl.GetResultService
         goal_id = UUID(uuid=list(bytes.fromhex(self._answer.split()[1])))
         answer = self._lane.client.call(service, f"{self._kind.action}/_action/get_result", limit=RESULT_TIMEOUT, goal_id=goal_id)
-        self._result = answer.status
+        self._result = answer
         return time.time_ns()
 
+    def outcome(self):
+        return self._result.status, self._result.result.error_code
+
     def check_single_result(self):
-        return "" if self._result in TERMINAL else f"the goal has the status {self._result}"
+        return "" if self._result.status in TERMINAL else f"the goal has the status {self._result.status}"
 
     def pause(self):
         pass
@@ -173,6 +181,9 @@ class RunningTopic:
 
     def wait_for_result(self):
         return time.time_ns()
+
+    def outcome(self):
+        return None
 
     def check_single_result(self):
         return ""
