@@ -12,8 +12,8 @@ from support import HOME
 LONGEST_WAIT = 1.5  # s, from acceptance to cancel
 # Commands that shut the controller down or take control from the driver, or whose effect outlasts the goal.
 EXCLUDED = ("dashboard/shutdown", "dashboard/quit", "dashboard/power_off", "dashboard/load", "dashboard/set_user_role",
-            "dashboard/set_operational_mode", "force_mode_start", "freedrive_start", "set_watchdog", "set_tcp", "set_gravity",
-            "set_payload", "set_target_payload", "trigger_protective_stop", "set_speed_slider")
+            "dashboard/set_operational_mode", "force_mode_start", "freedrive_start", "teach_mode_start", "set_watchdog", "set_tcp",
+            "set_gravity", "set_payload", "set_target_payload", "trigger_protective_stop", "set_speed_slider")
 
 
 @dataclass

@@ -17,7 +17,7 @@ import report  # noqa: E402
 from cell import StatusTrackingClient  # noqa: E402
 from clients import RESULT_LIMIT, Gate, GoalSender  # noqa: E402
 from journal import Journal, Violation  # noqa: E402
-from monitor import ArmMonitor, ResourceMonitor  # noqa: E402
+from monitor import AT_REST, ArmMonitor, ResourceMonitor  # noqa: E402
 from robot import Robot  # noqa: E402
 from support import HOME, wait_for  # noqa: E402
 from ur_tools import console  # noqa: E402
@@ -27,6 +27,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode  # noqa: E402
 
 READY_LIMIT = 10.0  # s, from the end of a fault to the first accepted motion
 REST_LIMIT = 1.0  # s
+REST_PERIOD = 0.5  # s, after the standstill
 SOAK_PERIOD = 10.0  # s, between two measurements of the driver's load without faults
 
 
@@ -96,25 +97,42 @@ class Chaos:
         self._robot.clear()
         self._journal.write("fault", "cleared")
         self._gate.restart_idle_time()
+        if fault.quiet:
+            self._check_standstill()
+            self._check_next_goal()
+        else:
+            self._recoveries[fault.kind.name].append(self._recovery())
+        self._monitor.paused.clear()
+        self._gate.set(True)
+
+    def _recovery(self):
+        """Returns the time until a motion is accepted; None if one continued."""
         cleared = time.monotonic()
         with self._gate.bypass():
             ready = self._wait_until_ready()
-        self._recoveries[fault.kind.name].append(ready - cleared if ready else None)
-        self._monitor.paused.clear()
-        if fault.quiet:
-            self._check_standstill()
-        self._gate.set(True)
+        return ready - cleared if ready else None
 
     def _check_standstill(self):
-        """Checks that the arm comes to rest after the last goal, and samples the load of the driver."""
+        """Checks that the arm comes to rest after the last goal and remains there, and samples the load of the driver."""
         if not self._gate.wait_until_idle(RESULT_LIMIT):
             raise Violation(f"a goal has no result {RESULT_LIMIT:g} s after the last fault")
         self._journal.check()
-        wait_for(lambda: self._robot.joint_speed() < 0.02, REST_LIMIT, "standstill after the last goal")
+        wait_for(lambda: self._robot.joint_speed() < AT_REST, REST_LIMIT, "standstill after the last goal")
+        cycle = self._robot.simulator.state()["cycle"]
+        self._wait(REST_PERIOD)
+        speed = self._robot.highest_target_speed(cycle)
+        if speed > AT_REST:
+            raise Violation(f"the arm moves again after the last goal, at {speed:.3f} rad/s")
         self._resources.sample()
 
-    def _wait_until_ready(self, limit=READY_LIMIT):
-        """Waits until a motion is accepted, or rejected because another one runs.
+    def _check_next_goal(self):
+        """No goal is left that could be BUSY."""
+        with self._gate.bypass():
+            self._wait_until_ready(may_be_busy=False)
+            self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=3.0, acceleration=15.0).succeeded()
+
+    def _wait_until_ready(self, limit=READY_LIMIT, may_be_busy=True):
+        """Waits until a motion is accepted, or rejected because another one runs, if one may run.
 
         Returns the time of the answer; None if the first attempt was rejected because of another motion.
         """
@@ -127,8 +145,11 @@ class Chaos:
                 return goal, time.monotonic()
             rejection = self._probe.rejection(goal)
             reasons.append(rejection.message)
-            self._robot.power_up()  # an earlier stand_down may have powered the arm off in the meantime
-            return (None, time.monotonic()) if rejection.error_code == ErrorCode.BUSY else None
+            is_busy = rejection.error_code == ErrorCode.BUSY
+            if is_busy and not may_be_busy:
+                raise Violation(f"BUSY, although every goal has its result: {rejection.message}")
+            self._robot.power_up()  # an earlier stand_down may have powered the arm off
+            return (None, time.monotonic()) if is_busy else None
 
         try:
             goal, when = wait_for(answered, limit, "a motion to be accepted again")
@@ -142,9 +163,7 @@ class Chaos:
         self._gate.set(False)
         self._robot.clear()
         self._check_standstill()
-        with self._gate.bypass():
-            self._wait_until_ready()
-            self._probe.send(MoveJ, "move_j", joint_positions=HOME, speed=1.0).succeeded()
+        self._check_next_goal()
         grown = self._resources.find_growth()
         if grown:
             raise Violation("the driver's " + "; ".join(grown))

@@ -70,6 +70,10 @@ class Robot:
         if state and state["robot_mode"] != "RUNNING":
             self._try(lambda: self.simulator.control("power", to="running"))
 
+    def highest_target_speed(self, after):
+        """Returns the highest speed that a joint was to have after this cycle, rad/s."""
+        return max((speed for _cycle, _published, speed, _tcp in self.simulator.control("trace", after=after)["cycles"]), default=0.0)
+
     def joint_speed(self):
         return max(map(abs, self.simulator.state()["actual"]["velocity"]))
 

@@ -1,5 +1,6 @@
 """./ur chaos: a short run, and the detection of violations."""
 
+import contextlib
 import itertools
 import os
 import pathlib
@@ -12,6 +13,7 @@ import time
 import types
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE = float(os.environ.get("UR_TEST_PATIENCE", "1"))  # programs with a sanitizer are slower
 ADDRESS = os.environ.get("UR_TEST_ADDRESS", "127.0.1.202")
 for folder in ("chaos", "demo", "ur_ros_rtde_commands/test/system", "ur_ros_rtde_commands/test/every_command"):
     sys.path.insert(0, str(ROOT / folder))
@@ -23,15 +25,21 @@ import journal  # noqa: E402
 import monitor  # noqa: E402
 
 
+@contextlib.contextmanager
 def chaos(*arguments):
+    """A run, which ends with the block."""
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT / "tools"), os.environ.get("PYTHONPATH", "")])}
-    return subprocess.Popen([sys.executable, "-m", "ur_tools.chaos", *arguments], env=env, stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, text=True)
+    with subprocess.Popen([sys.executable, "-m", "ur_tools.chaos", *arguments], env=env, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.send_signal(signal.SIGINT)  # does nothing after its end
 
 
 def test_a_short_run_finds_no_violation():
-    process = chaos("--address", ADDRESS, "--faults", "20", "--seed", "3")
-    output, _ = process.communicate(timeout=240)
+    with chaos("--address", ADDRESS, "--faults", "20", "--seed", "3") as process:
+        output, _ = process.communicate(timeout=240 * PATIENCE)
     assert process.returncode == 0, output
     assert "every goal had one result" in output
     assert re.search(r"fault +count +recovery p50 +max", output) and re.search(r"succeeded +\d+", output)
@@ -39,7 +47,7 @@ def test_a_short_run_finds_no_violation():
 
 def driver_pid(process, log):
     """Returns the process id of the driver from the journal."""
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + 60.0 * PATIENCE
     while True:
         found = re.search(r"the driver is process (\d+)", log.read_text() if log.exists() else "")
         if found:
@@ -49,9 +57,9 @@ def driver_pid(process, log):
 
 
 def test_a_violation_ends_the_run_and_reports_seed_and_logs(tmp_path):
-    process = chaos("--address", ADDRESS, "--faults", "1000", "--seed", "11", "--log", str(tmp_path))
-    os.kill(driver_pid(process, tmp_path / "journal.log"), signal.SIGKILL)
-    output, _ = process.communicate(timeout=120)
+    with chaos("--address", ADDRESS, "--faults", "1000", "--seed", "11", "--log", str(tmp_path)) as process:
+        os.kill(driver_pid(process, tmp_path / "journal.log"), signal.SIGKILL)
+        output, _ = process.communicate(timeout=120 * PATIENCE)
     assert process.returncode == 1
     assert "VIOLATED: " in output and "seed 11" in output and str(tmp_path / "journal.log") in output
     assert "./ur chaos --faults 1000 --seed 11" in output
