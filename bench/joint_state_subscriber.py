@@ -7,6 +7,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
+DISCOVERY_TIME = 1.0  # s, after the first message, in which the node still discovers: as in joint_state_latency.cpp
+
 
 def receive_in_python(seconds, topic="joint_states"):
     """Returns [(stamp, time of reception)] in ns of joint states."""
@@ -24,9 +26,14 @@ def receive_in_python(seconds, topic="joint_states"):
     limit = time.monotonic() + 15.0
     while not received and time.monotonic() < limit:
         executor.spin_once(timeout_sec=0.1)
+    _spin(executor, DISCOVERY_TIME)
     received.clear()
+    _spin(executor, seconds)
+    node.destroy_node()
+    return received
+
+
+def _spin(executor, seconds):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         executor.spin_once(timeout_sec=0.1)
-    node.destroy_node()
-    return received

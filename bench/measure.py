@@ -16,7 +16,8 @@ from servo_stream import servo_stream
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort
 
-TRACE_SECONDS = 7.0  # the simulator keeps 4096 cycles: 8 s at 500 Hz
+TRACE_SECONDS = 7.0  # the simulator keeps 16384 cycles: 32 s at 500 Hz
+GOALS = 5  # times --repeat, of those that last some milliseconds: for their 99th percentile
 
 
 def summary(values):
@@ -47,8 +48,8 @@ def state_figures(options, control, pids):
 
 def goal_figures(options, control):
     latency = GoalLatency(control)
-    measured = {"goal of C++ client to command": milliseconds(latency.from_cpp(options.goal_client, options.repeat)),
-                "goal of rclpy client to command": milliseconds(latency.from_python(options.repeat)),
+    measured = {"goal of C++ client to command": milliseconds(latency.from_cpp(options.goal_client, GOALS * options.repeat)),
+                "goal of rclpy client to command": milliseconds(latency.from_python(GOALS * options.repeat)),
                 "cancel to deceleration": latency.cancel_to_deceleration(options.repeat // 2),
                 "end of motion to result": latency.end_to_result(options.repeat)}
     latency.close()

@@ -15,7 +15,7 @@ from rclpy.node import Node
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "demo"))
 from control_port import ControlPort
 
-SECONDS = 7  # the simulator keeps 4096 cycles: 8 s at 500 Hz
+SECONDS = 7  # the simulator keeps 16384 cycles: 32 s at 500 Hz
 LIMIT = 30.0  # s, until the other subscribers are found
 ARGUMENTS = {"best effort": (), "reliable": ("reliable",)}
 

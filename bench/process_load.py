@@ -1,6 +1,5 @@
 """Processor time and memory of processes."""
 
-import os
 import threading
 import time
 from pathlib import Path
@@ -9,8 +8,8 @@ PERIOD = 0.5  # s between two points of a trace
 
 
 def cpu_seconds(pid):
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    """Returns the time of a process's clock, to nanoseconds: that of clock_getcpuclockid(3)."""
+    return time.clock_gettime((~pid << 3) | 2)
 
 
 def _parent(pid):

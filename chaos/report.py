@@ -2,10 +2,7 @@
 
 from collections import Counter
 
-
-def _percentile(values, fraction):
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
+from ur_tools.percentile import percentile
 
 
 def faults(recoveries):
@@ -15,7 +12,7 @@ def faults(recoveries):
     rows = [f"    {'fault':24} {'count':>5} {'recovery p50':>13} {'max':>9}"]
     for name, recovery_times in sorted(recoveries.items()):
         seconds = [value for value in recovery_times if value is not None]
-        figures = f"{_percentile(seconds, 0.5):11.3f} s {max(seconds):7.3f} s" if seconds else f"{'-':>13} {'-':>9}"
+        figures = f"{percentile(seconds, 0.5):11.3f} s {max(seconds):7.3f} s" if seconds else f"{'-':>13} {'-':>9}"
         rows.append(f"    {name:24} {len(recovery_times):5} {figures}")
     return rows
 

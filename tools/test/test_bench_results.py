@@ -16,9 +16,9 @@ MACHINE = {"cpu": "one", "cores": 2, "kernel": "6.1", "governor": "performance",
 LATENCY = "package to C++ subscriber"
 
 
-def results(values, begin=0.0, machine=None, settings=None, load=0.0):
+def results(values, begin=0.0, machine=None, settings=None, load=0.0, steal=0.0):
     """Returns runs with these medians of the latency, which began at `begin`, `begin` + 2 and so on."""
-    runs = [{"begin": begin + 2.0 * number, "load": {"other processes": load}, "figures": {LATENCY: {"p50": value}},
+    runs = [{"begin": begin + 2.0 * number, "load": {"other processes": load, "steal": steal}, "figures": {LATENCY: {"p50": value}},
              "samples": {LATENCY: [[0.002 * index, value] for index in range(300)]}} for number, value in enumerate(values)]
     return Results({**MACHINE, **(machine or {})}, "0123456789ab", settings or {"repeat": 40}, runs)
 
@@ -31,19 +31,19 @@ def verdicts(old, new):
 
 
 CHANGES = [
-    ([0.20, 0.21, 0.22], [0.30, 0.31, 0.32], WORSE),
-    ([0.30, 0.31, 0.32], [0.20, 0.21, 0.22], BETTER),
-    ([0.20, 0.21, 0.22], [0.20, 0.21, 0.22], SAME),
-    ([0.20, 0.21, 5.00], [0.20, 0.21, 0.22], SAME),  # one outlier
-    ([0.20, 0.21, 0.40], [0.30, 0.31, 0.32], SAME),  # the ranges overlap
-    ([0.20, 0.25, 0.30], [0.31, 0.32, 0.33], SAME),  # apart, but by less than the first result varies
-    ([75.0, 75.0, 75.0], [75.5, 75.5, 75.5], SAME),  # 0.7 %
-    ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], SAME),
-    ([0.0, 0.0, 0.0], [0.5, 0.6, 0.6], WORSE),
-    ([0.2, 0.2], [0.9, 0.9, 0.9], NOT_JUDGED),
+    ([0.20, 0.21, 0.21, 0.21, 0.22], [0.30, 0.31, 0.31, 0.31, 0.32], WORSE),
+    ([0.30, 0.31, 0.31, 0.31, 0.32], [0.20, 0.21, 0.21, 0.21, 0.22], BETTER),
+    ([0.20, 0.21, 0.21, 0.21, 0.22], [0.20, 0.21, 0.21, 0.21, 0.22], SAME),
+    ([0.20, 0.21, 0.21, 0.21, 5.00], [0.20, 0.21, 0.21, 0.21, 0.22], SAME),  # one outlier
+    ([0.20, 0.21, 0.21, 0.21, 0.40], [0.30, 0.31, 0.31, 0.31, 0.32], SAME),  # the ranges overlap
+    ([0.20, 0.25, 0.25, 0.25, 0.30], [0.31, 0.32, 0.32, 0.32, 0.33], SAME),  # apart, but by less than the first result varies
+    ([75.0] * 5, [75.5] * 5, SAME),  # 0.7 %
+    ([0.0] * 5, [0.0] * 5, SAME),
+    ([0.0] * 5, [0.5, 0.6, 0.6, 0.6, 0.6], WORSE),
+    ([0.2] * 4, [0.9] * 5, NOT_JUDGED),
     ([0.2], [0.9], NOT_JUDGED),
-    ([], [0.9, 0.9, 0.9], ONLY_NEW),
-    ([0.9, 0.9, 0.9], [], ONLY_OLD),
+    ([], [0.9] * 5, ONLY_NEW),
+    ([0.9] * 5, [], ONLY_OLD),
 ]
 
 
@@ -52,40 +52,46 @@ def test_a_change_is_judged_by_the_spread_of_both_results():
 
 
 def test_rows_of_only_one_result_are_shown_and_others_omitted():
-    old, new = results([0.2] * 3), results([0.2] * 3)
+    old, new = results([0.2] * 5), results([0.2] * 5)
     for run in new.runs:
         run["figures"] = {"start to ready": 0.8}
     assert verdicts(old, new) == {f"{LATENCY} p50": ONLY_OLD, "start to ready": ONLY_NEW}
 
 
 def test_a_row_that_failed_in_one_run_is_compared_by_the_others():
-    old, new = results([0.2] * 4), results([0.9] * 4)
+    old, new = results([0.2] * 6), results([0.9] * 6)
     new.runs[0]["figures"][LATENCY] = None
     assert verdicts(old, new) == {f"{LATENCY} p50": WORSE}
 
 
 def test_nothing_is_judged_across_machines():
     for key, value in (("cpu", "another"), ("cores", 8), ("kernel", "6.8-rt"), ("compiler", "Clang 19")):
-        old, new = results([0.2] * 3), results([0.9] * 3, machine={key: value})
+        old, new = results([0.2] * 5), results([0.9] * 5, machine={key: value})
         assert verdicts(old, new) == {f"{LATENCY} p50": NOT_JUDGED}, key
         assert any(f"{key}: {MACHINE[key]}, now {value}" in note for note in bench_compare.notes(old, new)), key
 
 
+def test_nothing_is_judged_across_settings():
+    assert verdicts(results([0.2] * 5), results([0.9] * 5, settings={"repeat": 5})) == {f"{LATENCY} p50": NOT_JUDGED}
+
+
 def test_runs_that_alternate_on_a_quiet_machine_have_no_notes():
-    assert bench_compare.notes(results([0.2] * 3, begin=0.0), results([0.9] * 3, begin=1.0)) == []
+    assert bench_compare.notes(results([0.2] * 5, begin=0.0), results([0.9] * 5, begin=1.0)) == []
 
 
 def test_what_limits_the_comparison_is_noted():
-    old = results([0.2] * 3, begin=0.0)
-    for new, text in ((results([0.2] * 3, begin=100.0), "do not alternate"),
-                      (results([0.2], begin=1.0), "Runs: 3 before, 1 now"),
-                      (results([0.2] * 3, begin=1.0, load=1.5), "1.5 cores during the runs now"),
-                      (results([0.2] * 3, begin=1.0, settings={"repeat": 5}), "repeat 40, now 5")):
+    old = results([0.2] * 5, begin=0.0)
+    for new, text in ((results([0.2] * 5, begin=100.0), "do not alternate"),
+                      (results([0.2], begin=1.0), "Runs: 5 before, 1 now"),
+                      (results([0.2] * 5, begin=1.0, load=1.5), "1.5 cores during the runs now"),
+                      (results([0.2] * 5, begin=1.0, steal=3.0), "3.0 % of the processor time during the runs now"),
+                      (results([0.2] * 5, begin=6.5), "do not alternate"),  # two changes
+                      (results([0.2] * 5, begin=1.0, settings={"repeat": 5}), "repeat 40, now 5")):
         assert any(text in note for note in bench_compare.notes(old, new)), text
 
 
 def test_the_table_marks_what_changed(capsys):
-    bench_compare.show(results([0.2, 0.21, 0.22]), results([0.4, 0.41, 0.42], begin=1.0))
+    bench_compare.show(results([0.2, 0.2, 0.21, 0.22, 0.22]), results([0.4, 0.4, 0.41, 0.42, 0.42], begin=1.0))
     line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith(LATENCY))
     assert "0.210 (0.200 to 0.220)" in line and "0.410 (0.400 to 0.420)" in line and "1.95" in line and line.endswith("WORSE")
 
@@ -191,8 +197,8 @@ def test_without_append_the_file_is_replaced(tmp_path, monkeypatch):
 
 def test_saved_runs_are_compared_without_measuring(tmp_path, monkeypatch, capsys):
     old, new = tmp_path / "old.json", tmp_path / "new.json"
-    bench_results.save(old, results([0.2] * 3))
-    bench_results.save(new, results([0.9] * 3, begin=1.0))
+    bench_results.save(old, results([0.2] * 5))
+    bench_results.save(new, results([0.9] * 5, begin=1.0))
     assert measured(monkeypatch, "--input", new, "--compare", old) == 0
     assert "WORSE" in capsys.readouterr().out
 
@@ -201,9 +207,9 @@ def test_saved_runs_are_compared_without_measuring(tmp_path, monkeypatch, capsys
 
 
 def test_the_report_is_one_page_with_its_figures(tmp_path):
-    new = results([0.4] * 3, begin=1.0)
+    new = results([0.4] * 5, begin=1.0)
     new.runs[-1]["samples"]["processes"] = {"command_server": [[0.5 * n, 4.0, 75.0] for n in range(20)]}
-    bench_report.write(tmp_path / "report", Layout.of_environment(), new, results([0.2] * 3))
+    bench_report.write(tmp_path / "report", Layout.of_environment(), new, results([0.2] * 5))
     page = (tmp_path / "report" / "bench.html").read_text()
     for title in ("Latencies", "Intervals", "Processor time", "Memory", "Compared with 0123456789ab", "Machine and load"):
         assert f"<h2>{title}</h2>" in page

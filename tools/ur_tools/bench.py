@@ -179,8 +179,9 @@ def _print(results: Results) -> None:
             console.line(f"{head} {value:10.3f} {target:>8}  {ratio:>5}  {row.unit}")
         elif bench_rows.failed(results.runs, row):
             console.line(f"{head} nothing measured")
-    load = results.runs[-1].get("load", {})
-    console.line(f"Beside the measurement: {', '.join(f'{name} {value:.2f}' for name, value in load.items())}")
+    loads = [run.get("load", {}) for run in results.runs]
+    highest = {name: max(load.get(name, 0.0) for load in loads) for name in loads[-1]}
+    console.line(f"Beside the measurement, at most: {', '.join(f'{name} {value:.2f}' for name, value in highest.items())}")
 
 
 def run(options: argparse.Namespace, layout: Layout) -> int:

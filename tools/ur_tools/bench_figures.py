@@ -11,6 +11,8 @@ import matplotlib
 matplotlib.use("Agg")  # before pyplot is imported
 import matplotlib.pyplot as plt
 
+from .percentile import percentile
+
 BINS = 80
 MOST_POINTS = 4000  # of one curve; more make the page large
 COLOURS = ("#1f77b4", "#d95f02", "#2ca02c", "#7570b3", "#8c564b", "#e7298a", "#17becf", "#666666")
@@ -32,11 +34,6 @@ def _svg(figure):
     svg = svg[svg.index("<svg"):]
     prefix = f"f{next(_figure_numbers)}-"
     return re.sub(r'(\bid="|href="#|url\(#)', lambda match: match[1] + prefix, svg)
-
-
-def percentile(values, fraction):
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
 
 
 def _thinned(points):

@@ -11,8 +11,8 @@ from typing import Dict, List
 from . import git, machine
 from .layout import Layout
 
-# Files that do not affect the driver.
-_NOT_DRIVER = (":!*.md", ":!tools", ":!bench", ":!chaos", ":!demo")
+# Files that affect neither the driver nor what is measured.
+_NOT_DRIVER = (":!*.md", ":!tools/test", ":!chaos", ":!demo")
 # Keys whose values must be equal for two results to be from the same machine and kind of build.
 SAME_MACHINE = ("cpu", "cores", "kernel", "governor", "compiler", "ros", "build")
 

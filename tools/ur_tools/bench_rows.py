@@ -115,7 +115,6 @@ ROWS: Tuple[Row, ...] = (
     Row("goal of rclpy client to command", "p99", 0.8, "ms"),
     Row("cancel to deceleration", "p50", 5.0, "ms"),
     Row("end of motion to result", "p50", 6.0, "ms from the last cycle in which the target moves"),
-    Row("end of motion to result", "p99", None, "ms from the last cycle in which the target moves"),
     *(Row(stream, *part) for stream in STREAMS for part in STREAM),
     Row("cpu", "simulator", 10.0, "% of a core"),
     Row("cpu", "robot_state_receiver", 10.0, "% of a core"),

@@ -14,6 +14,7 @@ from typing import Dict, List
 from . import bench_scale, bench_session, console, ports
 from .environment import program
 from .layout import ROOT, Layout
+from .percentile import percentile
 
 STARTS = 10
 WINDOW = 5.0  # s of the host for each measurement of load and time
@@ -93,10 +94,6 @@ def _cpu_percent(pid: int, seconds: float) -> float:
     sys.path.insert(0, str(ROOT / "bench"))
     from process_load import cpu_percent
     return cpu_percent({"simulator": pid}, seconds)["simulator"]
-
-
-def _percentile(values: List[float], percent: float) -> float:
-    return sorted(values)[min(len(values) - 1, int(percent / 100.0 * len(values)))]
 
 
 def _deviations(times: List[float]) -> List[float]:
@@ -220,8 +217,8 @@ def measure(layout: Layout, options: argparse.Namespace) -> "tuple[dict, dict]":
     memory, memory_samples = _memory(layout, options)
     figures = {
         "simulator": {"start-up": statistics.median(starts), "cpu idle": idle, "cpu moving": moving,
-                      "cycle p99": _percentile(deviations, 99.0), "cycle p99.9": _percentile(deviations, 99.9),
-                      "host p99": _percentile(host, 99.0), "host p99.9": _percentile(host, 99.9),
+                      "cycle p99": percentile(deviations, 0.99), "cycle p99.9": percentile(deviations, 0.999),
+                      "host p99": percentile(host, 0.99), "host p99.9": percentile(host, 0.999),
                       "cycle moving": 1e6 * CYCLE * moving / 100.0, "instructions": instructions, **memory},
         "simulator, compiling": {name: 1e3 * seconds for name, seconds in scripts.items()},
         "simulator, robots": _lost_time(layout, options),

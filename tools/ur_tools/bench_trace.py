@@ -9,6 +9,7 @@ from . import bench_hand_overs as hand_overs
 from . import bench_session, console, simulation
 from .environment import program
 from .layout import Layout
+from .percentile import percentile
 from .processes import Programs
 
 NODES = ("robot_state_receiver", "command_server")
@@ -43,11 +44,6 @@ def _measure(layout: Layout, options: argparse.Namespace, folder: pathlib.Path, 
                      "--publisher", str(program(layout, "ur_ros_rtde", "joint_state_floor")),
                      "--trace-library", _traced(layout, folder)["LD_PRELOAD"], "--trace", str(folder / "subscriber.trace")]
         return bench_session.run_script(programs, layout, options, "measure_trace.py", arguments, 120.0)
-
-
-def percentile(values: Sequence[float], fraction: float) -> float:
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(fraction * len(ordered)))]
 
 
 def _line(text: str, values: Sequence[float]) -> str:

@@ -17,6 +17,7 @@ from rclpy.action.graph import get_action_names_and_types
 
 from ur_ros_rtde_msgs.action import MoveJ
 
+GROUP = 20  # new clients
 STARTUP_LIMIT = 30.0  # s, for the clients to be killed to find their server
 
 
@@ -83,12 +84,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("actions", help="comma-separated names of the actions that each client has to discover")
     parser.add_argument("--clients", type=int, default=10, help="number of new clients, started one after another")
-    parser.add_argument("--killed", type=int, default=0, help="number of clients that wait for move_j and are killed first")
+    parser.add_argument("--killed", type=int, default=0, help=f"clients that wait for move_j and are killed, before each {GROUP} new ones")
     parser.add_argument("--limit", type=float, default=30.0, help="timeout of a new client in seconds")
     options = parser.parse_args()
     expected = {f"/{name}" for name in options.actions.split(",")}
-    kill_clients(options.killed)
-    print(json.dumps([measure(expected, options.limit) for _ in range(options.clients)]))
+    found = []
+    for number in range(options.clients):
+        if number % GROUP == 0:  # the driver forgets those that were killed
+            kill_clients(options.killed)
+        found.append(measure(expected, options.limit))
+    print(json.dumps(found))
 
 
 if __name__ == "__main__":
