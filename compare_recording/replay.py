@@ -4,6 +4,7 @@ from typing import Any, Callable, Dict, List, Sequence
 
 import numpy as np
 from robot_recording import SETTLED
+from ur_ros_rtde_cli.errors import CliError
 from ur_ros_rtde_cli.recording import TIME, Recording
 from ur_ros_rtde_cli.robot_check.rtde import Rtde
 from ur_simulator.robot import SimulatedRobot
@@ -23,7 +24,11 @@ def record(robot: SimulatedRobot, first: Sequence[float], script: str, outputs: 
         rows = _until(rtde, lambda row, begin: row[TIME] > begin + REST_BEFORE)
         robot.control("run_script", script=f"def recorded_motion():\n{script}end\n")
         rows += _until(rtde, lambda row, begin: row[PROGRAM_STATE] == PLAYING or row[TIME] > begin + LIMIT)
+        if rows[-1][PROGRAM_STATE] != PLAYING:
+            raise CliError(f"the simulator has not started the program within {LIMIT:g} s:\n{script}")
         rows += _until(rtde, lambda row, begin: row[PROGRAM_STATE] != PLAYING or row[TIME] > begin + most)
+        if rows[-1][PROGRAM_STATE] == PLAYING:
+            raise CliError(f"the program still runs after {most:g} s:\n{script}")
         rows += _until(rtde, lambda row, begin: row[TIME] > begin + SETTLED + 1.0 / frequency)
     columns: Dict[str, np.ndarray] = {name: np.array([np.atleast_1d(row[name]) for row in rows], float) for name in names}
     times = columns.pop(TIME)[:, 0]

@@ -8,6 +8,7 @@ with that distribution's rosidl. Files are compiled with -fsyntax-only -Werror a
 
 import argparse
 import concurrent.futures
+import hashlib
 import json
 import os
 import pathlib
@@ -16,6 +17,9 @@ import shlex
 import subprocess
 import sys
 import xml.etree.ElementTree
+
+from ur_tools import lint
+from ur_tools.layout import Layout
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 INTERFACES = ("msg", "srv", "action")
@@ -67,10 +71,16 @@ class Headers:
         self._write_logging_macros()
         for package in [*self.ros.values(), *self._ours.values()]:
             done = self.output / f"{package.name}.done"
-            newest = max(((package.folder / name).stat().st_mtime for name in package.interfaces()), default=0.0)
-            if package.has_interfaces and newest and not (done.exists() and done.stat().st_mtime > newest):
+            digest = self._digest(package)
+            if package.has_interfaces and package.interfaces() and not (done.exists() and done.read_text() == digest):
                 self._generate_interfaces(package)
-                done.touch()
+                done.write_text(digest)
+
+    def _digest(self, package):
+        """Of the interfaces and the generators: files of a checkout are as old as their commits."""
+        versions = [f"{name} {self.ros[name].version}" for name in sorted(self.ros) if name.startswith("rosidl_")]
+        files = [(package.folder / name).read_bytes() for name in package.interfaces()]
+        return hashlib.sha256(b"\0".join(["\n".join(versions).encode(), *files])).hexdigest()
 
     def _used_by(self, name):
         direct = self.ros[name].depends & self.ros.keys()
@@ -161,13 +171,19 @@ def rewrite(command, compiler, prefix, headers):
 
 
 def commands(build, pattern):
-    """Returns (file, folder, command) for each of our files that the build compiles."""
+    """Returns (file, folder, command) for each of our files that the build compiles. Raises SystemExit if it lacks one, as a unity build
+    does, whose compiler gets generated files."""
     found = {}
     for database in sorted(build.glob("*/compile_commands.json")):
         for entry in json.loads(database.read_text()):
             file = pathlib.Path(entry["directory"], entry["file"])
             if ROOT in file.parents and build not in file.parents and re.search(pattern, str(file.relative_to(ROOT))):
                 found[file] = (file, entry["directory"], entry["command"])
+    built = {package.parent.name for package in build.glob("*/compile_commands.json")}
+    sources = [source for source in sorted(ROOT.glob("*/src/**/*.cpp")) if source.relative_to(ROOT).parts[0] in built]
+    missing = [str(source) for source in sources if source not in found and re.search(pattern, str(source.relative_to(ROOT)))]
+    if missing:
+        raise SystemExit(f"{build} does not compile {len(missing)} sources, among them {missing[0]}: build with -DCMAKE_UNITY_BUILD=OFF")
     return list(found.values())
 
 
@@ -194,8 +210,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sources", nargs="?", type=pathlib.Path, help="folder with the ROS packages of a distribution")
     parser.add_argument("--compiler", action="append", help="compiler; may be repeated (default: g++)")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / ".ur" / "jazzy" / "build",
-                        help="build folder of colcon with compile_commands.json files (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, help="folder with a folder per package, each with compile_commands.json, of a build "
+                        "without CMAKE_UNITY_BUILD (default: is written, as for ./ur lint --tidy)")
     parser.add_argument("--prefix", type=pathlib.Path, default=ROOT / ".ur" / "jazzy" / "venv",
                         help="prefix of the ROS headers of that build (default: %(default)s)")
     parser.add_argument("--files", default="", help="regular expression of the files to compile (default: all)")
@@ -204,6 +220,7 @@ def main():
                         help="parallel jobs (default: all cores)")
     options = parser.parse_args()
     headers = None
+    options.build = options.build or lint.databases(Layout())[0].parents[1]
     if options.sources:
         sources = options.sources.resolve()
         headers = Headers(sources, (options.output or sources.with_name(sources.name + "-generated")).resolve())

@@ -58,6 +58,14 @@ def test_a_name_missing_in_the_distribution_is_an_error(project, capsys):
     assert "old_name" in capsys.readouterr().out
 
 
+def test_a_source_that_the_build_does_not_compile_by_itself_is_a_failure(project):
+    source = project.rolling.parent / "package" / "src" / "b.cpp"
+    source.parent.mkdir(parents=True)
+    source.write_text("")
+    with pytest.raises(SystemExit, match=r"does not compile 1 sources, among them .*b\.cpp: .*UNITY_BUILD=OFF"):
+        check.check("c++", project, None)
+
+
 def test_checking_no_file_is_a_failure(project):
     project.files = "no such file"
     assert check.check("c++", project, None) != 0

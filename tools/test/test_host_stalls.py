@@ -192,4 +192,4 @@ def test_a_repeated_case_counts_once(tmp_path):
         if failed:
             xml.SubElement(case, "failure")
     xml.ElementTree(root).write(report)
-    assert runner.read_cases(report, True) == runner.Cases(1, [])
+    assert runner.read_cases(report, True, True) == runner.Cases(1, [])

@@ -123,3 +123,15 @@ def test_every_reference_time_belongs_to_a_test_file_a_group_or_a_fuzz_target():
             continue
         path = ROOT / package / "test" / f"{file}.py"
         assert path.is_file() or any(f'GROUP = "{path.stem}"' in other.read_text() for other in path.parent.glob("test_*.py")), name
+
+
+def test_short_tests_run_beside_one_that_is_late():
+    now = 0.0
+    late, alone, short = jobs((10.0, 0.5), (9.0, 4.0), (8.0, 1.2))
+    timetable = Schedule([late, alone, short], 2, clock=lambda: now)
+    assert timetable.take() is late and timetable.take() is None  # the short one does not fit
+    short.cost = Cost(8.0, 0.5)
+    now = 15.0
+    assert timetable.take() is None  # late by 5 s: the other one could begin in 5 s
+    now = 20.0
+    assert timetable.take() is short

@@ -22,24 +22,28 @@ REPORT = """<testsuites><testsuite>
 def test_passed_cases_of_a_report_are_counted_without_skipped_ones(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text(REPORT)
-    assert runner.read_cases(report, False) == runner.Cases(2, ["Suite.bad", "Suite.broken"], {"Suite.left_out": "no device"})
+    assert runner.read_cases(report, False, True) == runner.Cases(2, ["Suite.bad", "Suite.broken"], {"Suite.left_out": "no device"})
 
 
 def test_a_program_without_a_report_is_one_case(tmp_path):
-    assert runner.read_cases(tmp_path / "none.xml", True) == runner.Cases(1, [])
-    assert runner.read_cases(tmp_path / "none.xml", False) == runner.Cases(0, [""])
+    assert runner.read_cases(tmp_path / "none.xml", True, False) == runner.Cases(1, [])
+    assert runner.read_cases(tmp_path / "none.xml", False, False) == runner.Cases(0, [""])
+
+
+def test_a_program_that_exits_before_its_report_has_failed(tmp_path):
+    assert runner.read_cases(tmp_path / "none.xml", True, True) == runner.Cases(0, [""])
 
 
 def test_a_program_that_runs_no_case_fails(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='filtered' status='notrun'/></testsuite>")
-    assert runner.read_cases(report, True) == runner.Cases(0, ["ran no case"])
+    assert runner.read_cases(report, True, True) == runner.Cases(0, ["ran no case"])
 
 
 def test_a_crash_after_passed_cases_is_a_failure(tmp_path):
     report = tmp_path / "report.xml"
     report.write_text("<testsuite><testcase name='good'/></testsuite>")
-    assert runner.read_cases(report, False) == runner.Cases(1, ["failed after its last case"])
+    assert runner.read_cases(report, False, True) == runner.Cases(1, ["failed after its last case"])
 
 
 def test_files_of_the_same_name_have_different_test_names(tmp_path):

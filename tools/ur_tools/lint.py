@@ -106,7 +106,7 @@ def format_sources(layout: Layout) -> int:
     return 0
 
 
-def _databases(layout: Layout) -> List[pathlib.Path]:
+def databases(layout: Layout) -> List[pathlib.Path]:
     """Returns compilation databases without unity builds, so that each file has an entry."""
     databases = []
     for name, package in build(Options(layout, tests=True)).items():
@@ -125,7 +125,7 @@ def tidy(layout: Layout) -> List[Check]:
     if program is None:
         raise console.Failure("clang-tidy is not installed: sudo apt-get install -y clang-tidy")
     found = []
-    for database in _databases(layout):
+    for database in databases(layout):
         sources = [path for path in cpp_files() if path.suffix == ".cpp" and str(path) in database.read_text()]
         for source in sources:
             console.line(f"    {source.relative_to(ROOT)}")

@@ -56,6 +56,11 @@ class Test:
         return "pytest" in self.command
 
     @property
+    def writes_report(self) -> bool:
+        """GoogleTest and pytest do, fuzz replays do not."""
+        return "test" in self.path.name
+
+    @property
     def path(self) -> pathlib.Path:
         """The pytest file or the program."""
         return pathlib.Path(self.command[-1] if self.is_pytest else self.command[0])
@@ -92,12 +97,12 @@ class Result:
         return self.in_time and self.status == 1 and bool(self.cases.failures) and not PROGRAM_FAILURES & set(self.cases.failures)
 
 
-def read_cases(report: pathlib.Path, succeeded: bool) -> Cases:
-    """Reads a JUnit report (GoogleTest's or pytest's). A program without a report counts as one case, without a name."""
+def read_cases(report: pathlib.Path, succeeded: bool, writes_report: bool) -> Cases:
+    """Reads a JUnit report (GoogleTest's or pytest's). A program that writes none counts as one case, without a name."""
     try:
         tree = xml.parse(report).getroot()
     except (OSError, xml.ParseError):
-        return Cases(1, []) if succeeded else Cases(0, [NO_REPORT])
+        return Cases(1, []) if succeeded and not writes_report else Cases(0, [NO_REPORT])
     found = Cases(0, [])
     cases = {f"{case.get('classname', '').split('.')[-1]}.{case.get('name')}": case for case in tree.iter("testcase")}
     for name, case in cases.items():  # the last attempt of each
@@ -245,7 +250,7 @@ class Runner:
             isolation.kill(lambda mark: mark == env[isolation.MARK])
         with self._lock:
             self._running.discard(process)
-        cases = read_cases(report, process.returncode == 0 and in_time)
+        cases = read_cases(report, process.returncode == 0 and in_time, test.writes_report)
         text = log.read_text(errors="replace") + "".join(f"\nleft behind: {command}\n" for command in left)
         if left:
             cases.failures.append(LEFT_BEHIND)

@@ -134,8 +134,10 @@ class Schedule:
         return not others or sum(map(self._load, others)) + self._load(job) <= self._limit + 1e-9
 
     def _earliest_start(self, job: Job) -> float:
-        """Returns when the running tests are expected to leave room for the job."""
-        running = sorted(self._running, key=lambda other: other.expected_end)
+        """Returns when the running tests are expected to leave room for the job. One that is late remains for as long as it is late."""
+        now = self._clock()
+        ends = {id(other): max(other.expected_end, 2.0 * now - other.expected_end) for other in self._running}
+        running = sorted(self._running, key=lambda other: ends[id(other)])
         while not self._fits(job, running):
-            start = running.pop(0).expected_end
+            start = ends[id(running.pop(0))]
         return start
