@@ -28,6 +28,7 @@ READY_TIMEOUT = 15.0  # s, from the first rejection until the robot is ready
 TRANSIENT_LOCAL = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 CONNECTING = (ErrorCode.NOT_READY, ErrorCode.LINK_LOST)  # the driver may still be connecting
 STANDSTILL = 0.002  # rad/s
+BAR = 12  # characters: the line fits on a terminal of 80 columns
 NEW_LINE = "\n" if sys.stdout.isatty() else ""  # after the progress line, which is shown on a terminal only
 RECORDING_AFTER_STANDSTILL = 0.8  # s, recorded after standstill
 
@@ -89,9 +90,9 @@ class Experiment:
         if not sys.stdout.isatty():
             return
         done = max(0.0, min(1.0, (self.start_height - self.recorder.height) / self.options.drop))
-        bar = "#" * round(30 * done)
+        bar = "#" * round(BAR * done)
         force = self.recorder.force()
-        print(f"\r  moving down [{bar:<30}] {self.start_height - self.recorder.height:5.3f} m, "
+        print(f"\r  moving down [{bar:<{BAR}}] {self.start_height - self.recorder.height:5.3f} m, "
               f"force x {force[0]:6.1f} y {force[1]:6.1f} z {force[2]:6.1f} N ", end="", flush=True)
 
     def push(self, axis):

@@ -117,7 +117,8 @@ def demo_ports() -> Finding:
     if not taken:
         return Finding("ports", OK, f"the ports of the demo are free on {DEMO_ADDRESS}")
     return Finding("ports", NOTE, ports.explain(DEMO_ADDRESS, taken).replace("\n", "; "),
-                   f"Stop that process, or use another address: ./ur demo --address {ports.another_address(DEMO_ADDRESS)}")
+                   "Stop that process, or use another address and ROS domain: ROS_DOMAIN_ID=1 ./ur demo --address "
+                   f"{ports.another_address(DEMO_ADDRESS)}")
 
 
 def loopback() -> Finding:

@@ -9,6 +9,7 @@ import struct
 from typing import Dict, List, Optional, Tuple
 
 from . import console
+from .layout import PROGRAM
 
 PORTS = {"dashboard": 29999, "primary": 30001, "secondary": 30002, "real-time": 30003, "RTDE": 30004,
          "read-only primary": 30011, "read-only secondary": 30012, "read-only real-time": 30013, "interpreter": 30020,
@@ -108,5 +109,5 @@ def check(address: str) -> None:
     """Raises Failure if a simulated controller cannot open its ports on the address."""
     taken = in_use(address, list(PORTS.values()))
     if taken:
-        raise console.Failure(f"{explain(address, taken)}\nStop that process, or use another address: "
-                              f"--address {another_address(address)}")
+        raise console.Failure(f"{explain(address, taken)}\nStop that process, or use another address and another ROS domain: "
+                              f"ROS_DOMAIN_ID=1 {PROGRAM} … --address {another_address(address)}")

@@ -65,9 +65,11 @@ def test_suggests_similar_names(running):
     assert error.startswith("no server of /movej; did you mean move_j "), output
 
 
-def test_lists_the_available_actions_if_no_name_is_similar(running):
+def test_a_name_without_a_similar_one_is_answered_at_once(running):
     code, output = ur("call", "qqq", "--wait", DISCOVERY)
-    assert code == 2 and "/move_l" in output and "/dashboard/power_on" in output, output
+    hint, error = output.splitlines()
+    assert code == 2 and hint.startswith("no plugin is named qqq; `ur plugins` lists them. Waiting "), output
+    assert re.fullmatch(r"no server of /qqq\. The driver serves \d+ actions; `ur plugins` lists the installed ones", error), output
 
 
 def test_reads_a_goal_from_a_file(running, tmp_path):
@@ -138,6 +140,7 @@ def test_accepts_nested_fields_and_arrays_of_messages(running):
 def test_shows_the_fields_of_a_goal_without_a_server():
     code, output = ur("call", "move_j", "--show", "{acceleration: 2}", domain=EMPTY_DOMAIN)
     assert code == 0 and yaml.safe_load(output) == {"joint_positions": [], "speed": 0.5, "acceleration": 2.0}, output
+    assert "# Speed of the leading joint. Unit: rad/s. Range: above 0, at most 3.14.\nspeed: 0.5\n" in output
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -216,10 +219,19 @@ def test_the_fields_of_a_name_with_a_namespace_are_checked_without_a_server(name
     assert code == 2 and "speed is 'fast'" in output, output
 
 
-@pytest.mark.parametrize("name, text", [("/my-robot/move_j", '"my-robot" is no namespace'), ("left/move_j", "no server of /left/move_j.")])
-def test_a_wrong_namespace_in_the_name_is_reported(name, text):
+@pytest.mark.parametrize("name, status, text", [
+    ("/my-robot/move_j", 2, '"my-robot" is no namespace'),
+    ("left/move_j", 1, f"no server of /left/move_j. No driver answers: start it, or check ROS_DOMAIN_ID ({EMPTY_DOMAIN})"),
+])
+def test_a_wrong_namespace_in_the_name_is_reported(name, status, text):
     code, output = ur("call", name, "--wait", "0.5", domain=EMPTY_DOMAIN)
-    assert code == 2 and text in output, output
+    assert code == status and text in output, output
+
+
+@pytest.mark.parametrize("domain", ["abc", "500", "-1"])
+def test_an_impossible_domain_is_reported(domain):
+    code, output = ur("state", domain=domain)
+    assert code == 2 and output == f'ROS_DOMAIN_ID is "{domain}": it must be a number from 0 to 232', output
 
 
 class UnresponsiveServer:

@@ -2,6 +2,7 @@
 
 import csv
 import errno
+import json
 import os
 import re
 import signal
@@ -13,6 +14,7 @@ from types import SimpleNamespace
 import pytest
 from action_msgs.msg import GoalStatus
 from programs import Process, find_program
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
@@ -25,7 +27,7 @@ from ur_ros_rtde_cli.interruptions import Interrupted
 from ur_ros_rtde_cli.main import CHECKOUT_COMMANDS, CHECKOUT_VARIABLE, COMMANDS, main
 from ur_ros_rtde_cli.namespaces import other_drivers
 
-from ur_ros_rtde_msgs.msg import ActiveModes
+from ur_ros_rtde_msgs.msg import ActiveModes, DriverState
 from ur_ros_rtde_msgs.srv import StartRecording, StopRecording
 
 
@@ -48,12 +50,30 @@ def test_shows_the_state(running):
     assert code == 0 and "elbow_joint" in output and "tcp position" in output, output
 
 
+def test_the_state_as_json(running):
+    code, output = ur("state", "--json")
+    state = json.loads(output)
+    assert code == 0 and state["driver_state"]["name"] == "READY" and len(state["joint_states"]["position"]) == 6, output
+
+
 def test_the_state_names_fake_joint_positions():
     joints = JointState(name=["left_shoulder_lift_joint", "left_elbow_joint"], position=[1.0, 2.0], velocity=[0.0, 0.0])
     warning, *rows = print_state.state_lines(print_state.Latest(joint_states=joints, joint_states_are_fake=Bool(data=True)))
     assert warning == "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
     assert len(rows) == 2 and len({row.index(" rad ") for row in rows}) == 1, rows
     assert len(list(print_state.state_lines(print_state.Latest(joint_states=joints, joint_states_are_fake=Bool())))) == 2
+
+
+def test_the_state_without_a_robot_is_that_of_the_driver():
+    client = Client("without_robot")
+    state = DriverState(state=DriverState.DISCONNECTED, name="DISCONNECTED", message="no connection to 127.0.0.9: check the address")
+    publisher = client.node.create_publisher(DriverState, "driver_state", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    publisher.publish(state)
+    try:
+        code, output = ur("state", "--namespace", "without_robot")
+        assert code == 1 and output == f"driver_state   DISCONNECTED  {state.message}", output
+    finally:
+        client.close()
 
 
 def test_the_state_says_that_it_is_old_and_names_active_modes(monkeypatch):
@@ -89,14 +109,14 @@ def test_a_missing_driver_is_reported_after_the_wait():
 def test_a_wrong_namespace_is_answered_with_the_existing_ones(running, tmp_path, monkeypatch, arguments, status, missing):
     monkeypatch.chdir(tmp_path)
     code, output = ur(*arguments, "--namespace", "nope")
-    assert code == status and f"{missing}, but there is a driver in /: give --namespace" in output, output
+    assert code == status and f"{missing}, but there is a driver in /: leave out --namespace" in output, output
 
 
 @pytest.mark.parametrize("nodes, text", [
     ([], ""),
     ([("command_server", "/nope"), ("command_server", "/left")], ""),
     ([("command_server", "/right"), ("dashboard_server", "/right"), ("command_server", "/left"), ("ur_viewer", "/")],
-     ", but there is a driver in /left and /right: give --namespace"),
+     ", but there is a driver in /left and /right: give --namespace left"),
 ])
 def test_finds_the_namespaces_of_drivers(nodes, text):
     node = SimpleNamespace(get_namespace=lambda: "/nope", get_node_names_and_namespaces=lambda: nodes)
@@ -218,7 +238,18 @@ def test_a_recording_that_may_still_start_is_named_with_the_remedy(slow_recorder
     if is_interrupted:
         process.interrupt()
     assert process.wait(20.0) == code
-    assert "end it: ros2 service call /slow/stop_recording ur_ros_rtde_msgs/srv/StopRecording" in process.output(), process.output()
+    assert "end it: ur record --stop --namespace slow" in process.output(), process.output()
+
+
+def test_a_recording_whose_program_was_killed_can_be_ended(slow_recorder):
+    requests, _ = slow_recorder
+    code, output = ur("record", "--stop", "--namespace", "slow")
+    assert code == 0 and requests == ["stop"], output
+    for arguments in ([], ["run.csv", "--stop"]):
+        code, output = ur("record", *arguments)
+        assert code == 2 and "give the file of a recording, or --stop" in output, output
+    code, output = ur("record", "run.csv", "--time", "-5")
+    assert code == 2 and "-5 is not above 0 s" in output, output
 
 
 def test_a_recording_whose_message_cannot_be_written_ends(slow_recorder):

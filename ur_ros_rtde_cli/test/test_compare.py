@@ -27,6 +27,15 @@ def test_finds_the_shift_and_the_difference():
     assert comparison.differences["robot_mode"].largest[0] == 0.0
 
 
+@pytest.mark.parametrize("is_first", [True, False])
+def test_finds_a_short_recording_in_a_long_one(is_first):
+    whole, part = recording("a", 1.0), recording("b", 1.0)
+    rows = slice(800, 950)  # 1.6 to 1.9 s
+    part = Recording("b", part.times[rows] - part.times[800], {name: values[rows] for name, values in part.outputs.items()}, [])
+    comparison = compare(part, whole, ["actual_q"], None) if is_first else compare(whole, part, ["actual_q"], None)
+    assert comparison.shift == pytest.approx(-1.6 if is_first else 1.6, abs=0.005)
+
+
 def test_equal_recordings_do_not_differ():
     comparison = compare(recording("a", 1.0), recording("b", 1.0), ["actual_q"], None)
     assert comparison.shift == pytest.approx(0.0, abs=1e-9) and comparison.differences["actual_q"].largest[0] < 1e-9

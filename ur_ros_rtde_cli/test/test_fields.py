@@ -30,6 +30,10 @@ def test_nan_is_a_number(text):
     assert math.isnan(read(f"speed: {text}", MoveJ.Goal()).speed)
 
 
+def test_0_and_1_are_false_and_true():
+    assert list(read("compliant: [0, 1, false, true, 0, 1]", ForceMode.Goal()).compliant) == [False, True] * 3
+
+
 def test_omitted_fields_keep_their_values():
     goal = read("", MoveJ.Goal(acceleration=3.0))
     assert (goal.speed, goal.acceleration) == (0.5, 3.0)
@@ -50,12 +54,12 @@ def test_reads_nested_messages_and_lists_of_messages():
     (MoveJ.Goal, "joint_positions: {a: 1}", "joint_positions is {'a': 1}: expected a list of numbers"),
     (MoveJ.Goal, "[1]", "the goal is [1]: expected a mapping of fields, as in {speed: 0.5}"),
     (ForceMode.Goal, "compliant: [true]", "compliant has 1 values: expected a list of 6 boolean values"),
-    (ForceMode.Goal, "compliant: [1, 1, 1, 1, 1, 1]", "compliant[0] is 1: expected true or false"),
+    (ForceMode.Goal, "compliant: [1, 0, 2, 1, 1, 1]", "compliant[2] is 2: expected true or false"),
     (SetDigitalOutput.Goal, "pin: 256", "pin is 256: expected an integer from 0 to 255"),
     (SetDigitalOutput.Goal, "pin: -1", "pin is -1: expected an integer from 0 to 255"),
     (SetDigitalOutput.Goal, "pin: 1.0", "pin is 1.0: expected an integer from 0 to 255"),
     (SetDigitalOutput.Goal, "pin: true", "pin is True: expected an integer from 0 to 255"),
-    (SetDigitalOutput.Goal, "state: 1", "state is 1: expected true or false"),
+    (SetDigitalOutput.Goal, "state: on it", "state is 'on it': expected true or false"),
     (Int8, "data: 128", "data is 128: expected an integer from -128 to 127"),
     (UInt8MultiArray, "data: [256]", "data[0] is 256: expected an integer from 0 to 255"),
     (DashboardText.Goal, "text: 5", "text is 5: expected a string; put it in quotes"),

@@ -7,7 +7,7 @@ Feedback is printed to stderr: one line in place on a terminal, otherwise one li
 --json, stdout has one JSON object per line: {"feedback": ...} for each message, then {"status": ..., "result": ...}, or
 {"rejected": ...}.
 
-If the driver ends or is restarted during the goal, the result is unknown and the exit code is 1.
+Exit code: 0 success, 1 failure (also if no driver answers, or if it ends during the goal), 2 goal rejected or wrong arguments.
 
 Ctrl-C, SIGTERM, SIGHUP and a closed output cancel the goal: the arm decelerates to standstill, the result is printed, and the exit
 code is 128 plus the number of the signal.
@@ -16,7 +16,7 @@ code is 128 plus the number of the signal.
     ur call execute_trajectory --file path.yaml
     ur call dashboard/robot_mode
     ur call left/stop            to a driver in the namespace left, as with --namespace left
-    ur call move_j --show        shows the fields of the goal
+    ur call move_j --show        shows the fields of the goal, with units and ranges: a beginning for --file
 """
 
 import argparse

@@ -26,6 +26,11 @@ def bar(fraction: float) -> str:
     return f"[{'#' * filled}{'.' * (BAR_WIDTH - filled)}]"
 
 
+def _cut(text: str, width: int) -> str:
+    """Cuts between two words."""
+    return text if len(text) <= width else text[:width + 1].rpartition(" ")[0]
+
+
 def describe(feedback: Any, elapsed: float) -> str:
     """Returns one line: time, progress, joints, and the fields that not every motion has."""
     motion = getattr(feedback, "motion", None)
@@ -57,7 +62,7 @@ class FeedbackDisplay:
             return
         motion = getattr(message.feedback, "motion", None)
         text = f"{bar(motion.progress)} {text}" if motion is not None else text
-        write(START_OF_LINE + text[:shutil.get_terminal_size().columns - 1])
+        write(START_OF_LINE + _cut(text, shutil.get_terminal_size().columns - 1))
 
     def clear(self) -> None:
         if self._terminal and self._shown_at is not None:

@@ -224,8 +224,8 @@ def _convert(kind: Any, old: Any, value: Any, path: Path) -> Any:
         if isinstance(value, (bool, int, float)):
             raise FieldError(path, f"{field_name(path)} is {_abbreviated(value)}: expected {_expected(kind)}; put it in quotes")
     elif kind.typename == idl.BOOLEAN_TYPE:
-        if isinstance(value, bool):
-            return value
+        if isinstance(value, bool) or value in (0, 1):  # numbers as in the axes of URScript
+            return bool(value)
     else:
         bounds = _integer_bounds(kind)
         if bounds is None:

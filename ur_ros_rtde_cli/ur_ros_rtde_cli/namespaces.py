@@ -23,7 +23,10 @@ def drivers(node: Any) -> List[str]:
 
 
 def other_drivers(node: Any) -> str:
-    """Returns ", but there is a driver in / and /left: give --namespace". Returns an empty text if there is one in the namespace of
+    """Returns ", but there is a driver in / and /left: give --namespace left". Returns an empty text if there is one in the namespace of
     `node`, or none at all."""
     found = drivers(node)
-    return f", but there is a driver in {' and '.join(found)}: give --namespace" if found and node.get_namespace() not in found else ""
+    if not found or node.get_namespace() in found:
+        return ""
+    remedy = "leave out --namespace" if found[0] == "/" else f"give --namespace {found[0].strip('/')}"
+    return f", but there is a driver in {' and '.join(found)}: {remedy}"

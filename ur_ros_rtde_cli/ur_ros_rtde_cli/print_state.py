@@ -15,6 +15,7 @@ from std_msgs.msg import Bool, Float64
 
 from ur_ros_rtde_msgs.msg import ActiveModes, DriverState, RobotMode, SafetyMode
 
+from . import fields
 from .errors import OperationFailed
 from .interruptions import Interrupted
 from .namespaces import other_drivers
@@ -69,7 +70,7 @@ def state_lines(latest: Latest) -> Iterator[str]:
         yield f"{'active_modes':14} {', '.join(latest['active_modes'].names)}"
     if "joint_states_are_fake" in latest and latest["joint_states_are_fake"].data:
         yield "joint_states has fake positions (digital twin); the robot's are on actual_joint_states:"
-    joints = latest["joint_states"]
+    joints = latest.get("joint_states", JointState())
     width = max(map(len, ("tcp orientation", *joints.name)))
     for name, position, velocity in zip(joints.name, joints.position, joints.velocity):
         yield f"{name:{width}} {position:9.4f} rad  {math.degrees(position):8.2f} deg  {velocity:8.4f} rad/s"
@@ -84,23 +85,32 @@ def state_lines(latest: Latest) -> Iterator[str]:
         yield f"{'torque':{width}} {torque.x:9.3f} {torque.y:9.3f} {torque.z:9.3f} Nm"
 
 
+def _text(latest: Latest, as_json: bool) -> str:
+    return fields.to_json(dict(latest)) if as_json else "\n".join(state_lines(latest))
+
+
+def _has_no_robot(latest: Latest) -> bool:
+    return "driver_state" in latest and latest["driver_state"].name == "DISCONNECTED"
+
+
 def print_state(session: Session, options: argparse.Namespace) -> int:
     latest = subscribe(session)
-    if not session.wait(lambda: "joint_states" in latest, options.wait):
+    if not session.wait(lambda: "joint_states" in latest or _has_no_robot(latest), options.wait) and "driver_state" not in latest:
         reason = other_drivers(session.node) or ". Does robot_state_receiver run with this ROS_DOMAIN_ID? Is the robot on?"
         raise OperationFailed(f"no joint_states within {options.wait:g} s{reason}")
     session.wait(lambda: len(latest) == TOPIC_COUNT, 0.5)
-    if options.watch and sys.stdout.isatty():
+    if options.watch and sys.stdout.isatty() and not options.json:
         _watch_on_screen(session, latest)
         return 0
-    print("\n".join(state_lines(latest)))
+    print(_text(latest, options.json))
+    if not options.watch:
+        return 0 if "joint_states" in latest else 1
     try:
-        while options.watch:
+        while True:
             session.wait(lambda: None, LINE_PERIOD)
-            print("\n" + "\n".join(state_lines(latest)), flush=True)
+            print(("" if options.json else "\n") + _text(latest, options.json), flush=True)
     except Interrupted:
-        pass
-    return 0
+        return 0
 
 
 def _watch_on_screen(session: Session, latest: Latest) -> None:

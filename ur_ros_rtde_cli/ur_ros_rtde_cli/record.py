@@ -1,13 +1,15 @@
 """Records RTDE outputs of the robot to a CSV file until Ctrl-C or for a given time.
 
     ur record run.csv timestamp actual_q actual_TCP_force --time 10
+    ur record --stop                       ends one that goes on after its program was killed
 """
 
 import argparse
+import math
 import pathlib
 from typing import Any
 
-from .errors import OperationFailed
+from .errors import CliError, OperationFailed
 from .interruptions import Interrupted
 from .namespaces import other_drivers
 
@@ -15,20 +17,28 @@ RESPONSE_TIMEOUT = 10.0  # s, of a service
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=pathlib.Path, help="CSV file on the machine of robot_state_receiver; must not exist")
+    parser.add_argument("file", type=pathlib.Path, nargs="?", help="CSV file on the machine of robot_state_receiver; must not exist")
     parser.add_argument("fields", nargs="*", help="RTDE outputs (default: timestamp actual_q actual_qd actual_TCP_pose)")
-    parser.add_argument("--time", type=float, default=None, metavar="S", help="duration of the recording (default: until Ctrl-C)")
+    parser.add_argument("--time", type=_duration, default=None, metavar="S", help="duration of the recording (default: until Ctrl-C)")
+    parser.add_argument("--stop", action="store_true", help="end the recording that runs, whoever has started it")
     parser.add_argument("--frequency", type=float, default=0.0, metavar="HZ",
                         help="rows per second (default: one for each RTDE package)")
+
+
+def _duration(text: str) -> float:
+    seconds = float(text)
+    if not 0.0 < seconds < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0 s")
+    return seconds
 
 
 class _NoResponse(OperationFailed):
     """The request may still be executed."""
 
 
-def remedy(service: str) -> str:
-    """Returns how to end a recording that may be running. `service`: full name of stop_recording."""
-    return f"if it is running, end it: ros2 service call {service} ur_ros_rtde_msgs/srv/StopRecording"
+def remedy(namespace: str) -> str:
+    """Returns how to end a recording that may be running."""
+    return "if it is running, end it: ur record --stop" + (f" --namespace {namespace.strip('/')}" if namespace.strip("/") else "")
 
 
 def _send(session: Any, kind: Any, name: str, **request: Any) -> Any:
@@ -65,9 +75,12 @@ def _end(session: Any, kind: Any, started: Any, file: pathlib.Path) -> Any:
         _response(session, started, "start_recording")
         return _stop(session, kind)
     except (_NoResponse, Interrupted):
-        service = session.node.resolve_service_name("stop_recording")
-        write(f"the end of the recording {file} is not confirmed: {remedy(service)}\n")
+        write(f"the end of the recording {file} is not confirmed: {remedy(session.node.get_namespace())}\n")
         raise
+
+
+def _print(stopped: Any) -> None:
+    print(f"{stopped.filename}: {stopped.rows} rows" + (f", {stopped.lost} lost" if stopped.lost else ""))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -75,7 +88,12 @@ def run(options: argparse.Namespace) -> int:
 
     from .feedback import write
     from .session import session
+    if options.stop == (options.file is not None):
+        raise CliError("give the file of a recording, or --stop to end the one that runs")
     with session(options.namespace) as created:
+        if options.stop:
+            _print(_stop(created, StopRecording))
+            return 0
         started = _send(created, StartRecording, "start_recording", filename=str(options.file.absolute()), fields=options.fields,
                         frequency=options.frequency)
         exit_code = 0
@@ -88,6 +106,5 @@ def run(options: argparse.Namespace) -> int:
         except _NoResponse as error:
             write(f"{error}: a recording that starts late is stopped\n")
             exit_code = error.exit_status
-        stopped = _end(created, StopRecording, started, options.file.absolute())
-        print(f"{stopped.filename}: {stopped.rows} rows" + (f", {stopped.lost} lost" if stopped.lost else ""))
+        _print(_end(created, StopRecording, started, options.file.absolute()))
         return exit_code

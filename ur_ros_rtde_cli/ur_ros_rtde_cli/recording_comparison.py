@@ -46,7 +46,7 @@ def _moved(recording: Recording, shift: float) -> Recording:
 def _misfit(first: Recording, second: Recording, scales: Dict[str, float]) -> float:
     """Returns the mean squared difference, relative to the range of each output."""
     times = _overlap(first, second)
-    if len(times) < LEAST_OVERLAP * min(len(first.times), len(second.times) * np.ptp(first.times) / np.ptp(second.times)):
+    if not len(times) or np.ptp(times) < LEAST_OVERLAP * min(np.ptp(first.times), np.ptp(second.times)):
         return math.inf
     kept = first.times.searchsorted(times)
     return sum(float(np.mean((at(second, name, times) - first.outputs[name][kept]) ** 2)) / scale**2 for name, scale in scales.items())
@@ -58,8 +58,8 @@ def best_shift(first: Recording, second: Recording) -> float:
     scales = {name: scale for name, scale in scales.items() if scale > 0.0 and math.isfinite(scale)}
     if not scales:
         return 0.0
-    half = LEAST_OVERLAP * max(np.ptp(first.times), np.ptp(second.times))
-    candidates = np.linspace(-half, half, COARSE_STEPS + 1)
+    least = LEAST_OVERLAP * min(np.ptp(first.times), np.ptp(second.times))
+    candidates = np.linspace(first.times[0] - second.times[-1] + least, first.times[-1] - second.times[0] - least, COARSE_STEPS + 1)
     for _ in range(2):
         misfits = [_misfit(first, _moved(second, shift), scales) for shift in candidates]
         best, step = float(candidates[int(np.argmin(misfits))]), float(candidates[1] - candidates[0])
@@ -75,11 +75,11 @@ def compare(first: Recording, second: Recording, names: Sequence[str], shift: Op
     for name, values in first.outputs.items():
         if values.shape[1] != second.outputs[name].shape[1]:
             raise CliError(f"{name} has {values.shape[1]} elements in {first.name}, {second.outputs[name].shape[1]} in {second.name}")
-    shift = best_shift(first, second) if shift is None else shift
+    given, shift = shift, best_shift(first, second) if shift is None else shift
     second = _moved(second, shift)
     times = _overlap(first, second)
     if not len(times):
-        raise CliError(f"the recordings do not overlap in time with --shift {shift:g}")
+        raise CliError("the recordings do not overlap in time" + ("" if given is None else f" with --shift {given:g}"))
     return Comparison(first, second, shift, {name: _difference(first, second, name, times) for name in first.outputs})
 
 

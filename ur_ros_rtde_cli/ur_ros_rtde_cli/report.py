@@ -9,7 +9,7 @@ import re
 import socket
 import sys
 import time
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Tuple
 
 from .errors import CliError, OperationFailed
 from .namespaces import NODES, other_drivers
@@ -156,18 +156,40 @@ def _robot(address: str) -> List[str]:
     return [finding.line() for finding in RobotCheck(Options(address)).findings()]
 
 
-def _log_folder() -> pathlib.Path:
+def _log_folder(environment: Mapping[str, str]) -> pathlib.Path:
     """As rcl_logging chooses it."""
-    home = os.environ.get("ROS_HOME") or pathlib.Path.home() / ".ros"
-    return pathlib.Path(os.environ.get("ROS_LOG_DIR") or pathlib.Path(home) / "log").expanduser()
+    home = environment.get("ROS_HOME") or pathlib.Path.home() / ".ros"
+    return pathlib.Path(environment.get("ROS_LOG_DIR") or pathlib.Path(home) / "log").expanduser()
+
+
+def _running() -> Dict[str, pathlib.Path]:
+    """Returns the log folders of the driver's processes of this user in this ROS domain, by their number."""
+    found = {}
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if (process / "comm").read_text().strip() not in {program[:15] for program in PROGRAMS}:
+                continue
+            variables = (process / "environ").read_text(errors="replace").split("\0")
+        except OSError:
+            continue  # it has ended, or belongs to somebody else
+        environment = dict(variable.split("=", 1) for variable in variables if "=" in variable)
+        if environment.get("ROS_DOMAIN_ID", "0") == os.environ.get("ROS_DOMAIN_ID", "0"):
+            found[process.name] = _log_folder(environment)
+    return found
+
+
+def _log_files(program: str, running: Mapping[str, pathlib.Path]) -> List[pathlib.Path]:
+    """Returns the logs of the running processes of a program, otherwise all, the newest last."""
+    own = [file for process, folder in running.items() for file in folder.glob(f"{program}_{process}_*.log")]
+    return sorted(own or _log_folder(os.environ).glob(f"{program}_*.log"), key=lambda path: path.stat().st_mtime)
 
 
 def _logs() -> Iterator[str]:
     """Yields the last lines of the newest log of each program of the driver."""
-    folder = _log_folder()
+    folder, running = _log_folder(os.environ), _running()
     found = False
     for program in PROGRAMS:
-        logs = sorted(folder.glob(f"{program}_*.log"), key=lambda path: path.stat().st_mtime)
+        logs = _log_files(program, running)
         if not logs:
             continue
         found = True
@@ -180,7 +202,7 @@ def _logs() -> Iterator[str]:
         yield from lines[-LOG_LINES:]
     if not found:
         yield f"no log of the driver in {folder}"
-    for stop in sorted(folder.glob("ur_stop_*.csv")):
+    for stop in sorted(file for where in {folder, *running.values()} for file in where.glob("ur_stop_*.csv")):
         yield f"states before a stop, to attach: {stop}"
 
 

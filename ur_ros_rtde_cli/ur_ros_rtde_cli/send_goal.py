@@ -1,7 +1,9 @@
 """Sends one goal and waits for its result."""
 
 import argparse
-from typing import Any, Optional, Tuple
+import os
+import textwrap
+from typing import Any, List, Optional, Tuple
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
@@ -9,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from ur_ros_rtde_msgs.msg import GoalRejected
 
-from . import actions, fields
+from . import actions, fields, interface_files
 from .driver_watch import CANCEL_TIMEOUT, DriverWatch, loss
 from .errors import CliError, OperationFailed
 from .feedback import write
@@ -18,9 +20,22 @@ from .interruptions import Interrupted
 from .namespaces import other_drivers
 from .session import GRAPH_POLL_PERIOD, Session
 
+COMMENT_WIDTH = 100  # characters
+
 
 def _read_goal(options: argparse.Namespace) -> fields.Document:
     return fields.Document.of_file(options.file) if options.file is not None else fields.Document(options.goal or "{}")
+
+
+def _documented(goal: Any, kind: str) -> str:
+    """Returns a goal in YAML, with units and ranges of its fields as comments."""
+    documented = interface_files.fields(kind)
+    lines: List[str] = []
+    for line in fields.to_yaml(goal).splitlines():
+        field = documented.get(line.partition(":")[0])
+        lines += textwrap.wrap(field.comment if field else "", COMMENT_WIDTH, initial_indent="# ", subsequent_indent="# ")
+        lines.append(line)
+    return "\n".join(lines)
 
 
 def _server_not_found(session: Session, name: str, requested: str) -> CliError:
@@ -34,9 +49,9 @@ def _server_not_found(session: Session, name: str, requested: str) -> CliError:
     known = {full.lstrip("/") for full in served} | set(actions.plugin_names())
     hint = "" if requested in known else actions.suggestion(requested, known)
     if not served:
-        return CliError(f"no server of {name}{hint or '.'} No action server was found. Does command_server run with "
-                        "this ROS_DOMAIN_ID?")
-    return CliError(f"no server of {name}{hint or '; the available actions are: ' + ', '.join(sorted(served))}")
+        return OperationFailed(f"no server of {name}{hint or '.'} No driver answers: start it, or check ROS_DOMAIN_ID "
+                               f"({os.environ.get('ROS_DOMAIN_ID', '0')})")
+    return CliError(f"no server of {name}{hint or f'. The driver serves {len(served)} actions; `ur plugins` lists the installed ones'}")
 
 
 class _ActionConnection:
@@ -46,6 +61,7 @@ class _ActionConnection:
         self._session, self._options = session, options
         self.name = f"{session.node.get_namespace().rstrip('/')}/{options.action}"
         self._document = _read_goal(options)
+        self.kind = ""  # of the goal, once it is known
 
     def connect(self) -> Tuple[Optional[ActionClient], Any]:
         """Returns the client and the goal. With --show, the client is None and a server is needed only for unknown types."""
@@ -73,13 +89,13 @@ class _ActionConnection:
         return actions.served(self._session.node).get(self.name)
 
     def _load_and_fill(self, kind: str) -> Tuple[Any, Any]:
-        action = actions.load(self.name, kind)
+        action, self.kind = actions.load(self.name, kind), kind
         return action, self._document.fill(action.Goal())
 
     def _suggest_names(self) -> None:
         requested, plugins = self._options.action, actions.plugin_names()
-        hint = actions.suggestion(requested, plugins)
-        if hint and requested not in plugins and self._served_type() is None:
+        hint = actions.suggestion(requested, plugins) or "; `ur plugins` lists them."
+        if requested not in plugins and self._served_type() is None:
             write(f"no plugin is named {requested}{hint} Waiting {self._options.wait:g} s for a server\n")
 
 
@@ -152,7 +168,7 @@ def send_goal(session: Session, options: argparse.Namespace) -> int:
     connection = _ActionConnection(session, options)
     client, goal = connection.connect()
     if client is None:
-        print(fields.to_yaml(goal))
+        print(_documented(goal, connection.kind))
         return 0
     rejections = _Rejections(session)
     output = (JsonOutput if options.json else TextOutput)(options.quiet)

@@ -1,6 +1,7 @@
 """A ROS node for the duration of one command."""
 
 import contextlib
+import os
 import time
 from typing import Any, Callable, Iterator, Optional, TypeVar
 
@@ -9,11 +10,13 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
+from .errors import CliError
 from .interruptions import PendingInterruption
 
 T = TypeVar("T")
 
 POLL_PERIOD = 0.05  # s, for signals; messages and results wake the executor
+MOST_DOMAIN = 232  # the ports of a higher one do not exist
 GRAPH_POLL_PERIOD = 0.01  # s; changes of the ROS graph do not wake the executor
 
 
@@ -33,8 +36,14 @@ def _start_discovery(context: rclpy.Context) -> Any:
     return None
 
 
+def _check_domain(text: str) -> None:
+    if text and not (text.isdecimal() and int(text) <= MOST_DOMAIN):
+        raise CliError(f"ROS_DOMAIN_ID is \"{text}\": it must be a number from 0 to {MOST_DOMAIN}")
+
+
 class Session:
     def __init__(self, namespace: str):
+        _check_domain(os.environ.get("ROS_DOMAIN_ID", ""))
         self.context = rclpy.Context()
         self._interruption = PendingInterruption()
         rclpy.init(context=self.context, signal_handler_options=SignalHandlerOptions.NO)

@@ -137,7 +137,7 @@ def test_a_recording_that_may_still_start_is_named_with_the_remedy(fake, monkeyp
     monkeypatch.setattr(recording, "ANSWER_TIMEOUT", 0.0)
     fake.set(hold="start_recording")
     assert requests_of_a_late_recording(fake) == ["start_recording"]
-    assert re.search("the end of the recording .*run.csv is not confirmed: .* end it: ros2 service call /fake/stop_recording", caplog.text)
+    assert re.search("the end of the recording .*run.csv is not confirmed: .* end it: ur record --stop --namespace fake", caplog.text)
 
 
 def test_a_recording_whose_end_is_interrupted_is_stopped(fake, arm, monkeypatch):

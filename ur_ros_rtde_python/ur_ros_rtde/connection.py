@@ -243,7 +243,7 @@ class Connection:
             hint = actions.suggestion(name, known) or f"; the commands are: {', '.join(sorted(known))}"
             return UnknownCommand(f"there is no command {name}{hint}")
         domain = os.environ.get("ROS_DOMAIN_ID", "0")
-        others = sorted(full for full in actions.served(self.node) if full.endswith("/" + name))
+        others = sorted(full for full in actions.served(self.node) if full.endswith("/" + name) and full != self.full_name(name))
         if others:
             hint = f"It is served as {', '.join(others)}: check the namespace of the Robot."
         elif served:

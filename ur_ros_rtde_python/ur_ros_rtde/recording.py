@@ -68,7 +68,7 @@ class Recording:
             return
         if not self._connection.wait(done, ANSWER_TIMEOUT):
             raise NoDriver(f"start_recording was not answered within {ANSWER_TIMEOUT:g} s; "
-                           f"{remedy(self._connection.full_name('stop_recording'))}")
+                           f"{remedy(self._connection.namespace)}")
         if done.result().success:
             self._stop()
 
