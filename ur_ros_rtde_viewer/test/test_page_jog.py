@@ -67,15 +67,24 @@ def test_a_held_button_does_not_undo_a_stop_after_a_pause_of_the_browser(tab, ro
         until(lambda: is_moving(simulator), "the arm to move")
         tab.page.keyboard.press("Escape") if of_the_page else robot.send(Stop, "stop").succeeded()
         until(lambda: not is_moving(simulator), "the arm to stop")
-        position = simulator.state()["actual"]["position"]
+        position, place = simulator.state()["actual"]["position"], middle_of(tab.button("Z +"))
         tab.page.evaluate(PAUSE_OF_THE_BROWSER, 2e3 * STREAM_TIMEOUT)
         tab.wait_for_text(STOPPED)
+        assert middle_of(tab.button("Z +")) == place  # and no other button is under the pointer
         number = len(rejections) + REJECTIONS
         until(lambda: len(rejections) >= number, "further messages of the button")
         assert set(rejections) == {STOPPED} and simulator.state()["actual"]["position"] == pytest.approx(position, abs=1e-4)
     with tab.held("Z +"):
         until(lambda: is_moving(simulator), "the arm to move after the release of the button")
     until(lambda: not is_moving(simulator), "the arm to stop")
+
+
+def test_a_banner_does_not_move_the_buttons(tab, simulator):
+    tab.open("Jog")
+    place = middle_of(tab.button("Z +"))
+    simulator.control("protective_stop", reason="test")
+    tab.wait_for_text("PROTECTIVE STOP: ")
+    assert middle_of(tab.button("Z +")) == place
 
 
 def test_a_touch_that_the_browser_cancels_releases_the_button(tab, simulator):

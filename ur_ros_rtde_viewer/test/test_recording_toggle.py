@@ -69,8 +69,8 @@ def test_a_second_click_is_ignored_until_the_first_one_is_answered(driver, panel
 
 def test_a_start_that_fails_leaves_the_page_as_it_was(driver, panel):
     panel.toggle()
-    driver.answer(False, "run.csv is being recorded: stop that first")
-    assert not panel.is_recording and not panel._button.disabled and "stop that first" in panel._message.content
+    driver.answer(False, "run.csv is being recorded: end that first (ur record --stop)")
+    assert not panel.is_recording and not panel._button.disabled and "end that first" in panel._message.content
     panel.toggle()
     assert driver.kinds == [StartRecording] * 2
 

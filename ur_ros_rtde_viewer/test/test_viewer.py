@@ -130,7 +130,7 @@ def test_a_protective_stop_has_a_red_banner_and_ends(viewer, robot, simulator):
     simulator.control("protective_stop", reason="a test")
     banner = panel(robot, Banner)
     update_until(viewer, lambda: [color for color, _ in banner.shown] == [RED], "the banner")
-    assert "PROTECTIVE STOP" in banner.shown[0][1] and banner._element.visible
+    assert "PROTECTIVE STOP" in banner.shown[0][1] and banner._area._element.visible
     update_until(viewer, simulator.unlock_protective_stop, "the end of the unlock delay")
     simulator.control("power", to="running")
     update_until(viewer, lambda: robot.state.safety_mode == "NORMAL" and RED not in dict(banner.shown),

@@ -16,6 +16,7 @@ from .ros.other_drivers import OtherDrivers
 
 logger = logging.getLogger(__name__)
 CLOSE_TIMEOUT = 2.0  # s
+FLOOR, FLOOR_IN_THE_DARK = ((200, 200, 200), (140, 140, 140)), ((45, 45, 50), (80, 80, 88))  # colors of its cells and sections
 CAMERA = (-1.35, -1.6, 1.05), (-0.35, 0.0, 0.42)  # m, position and the point that it looks at
 
 
@@ -27,7 +28,8 @@ class Viewer:
         self._posted: "queue.SimpleQueue[Callable[[], None]]" = queue.SimpleQueue()
         self._last_error = ""
         with server.atomic():
-            server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5)
+            cell, section = FLOOR_IN_THE_DARK if options.dark else FLOOR
+            server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.1, section_size=0.5, cell_color=cell, section_color=section)
             server.initial_camera.position, server.initial_camera.look_at = CAMERA
             found = robots(options)
             self.layout = Layout(server, found)

@@ -25,11 +25,11 @@ class JogPanel:
             self._frame = gui.add_dropdown("Axes of", tuple(FRAMES))
             self._linear = gui.add_slider("Speed [m/s]", 0.01, MAX_LINEAR, 0.01, default.linear)
             self._angular = gui.add_slider("Rotation [rad/s]", 0.05, MAX_ANGULAR, 0.05, default.angular)
-            self._text = gui.add_markdown("")
             gui.add_html(style.TWO_COLUMNS + CLICK_AFTER_TOUCH)
             for axis in range(len(AXES)):
                 for sign in (1.0, -1.0):
                     self._add_button(axis, sign)
+            self._text = gui.add_markdown("")  # below the buttons: above them, it would move another one under the pointer
 
     def _add_button(self, axis: int, sign: float) -> None:
         button = self._gui.add_button(f"{AXES[axis]} {'+' if sign > 0 else '−'}", color=COLORS[axis % 3])

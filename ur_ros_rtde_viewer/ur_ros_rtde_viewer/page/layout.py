@@ -1,4 +1,4 @@
-"""The layout of the page: the banners, the tabs of the robots below them, and a second panel with the plots."""
+"""The layout of the page: the banners over the scene, the tabs of the robots, and a second panel with the plots."""
 
 from typing import Any, Dict, Sequence
 
@@ -7,9 +7,10 @@ from viser._messages import GuiSetPanelCollapsedMessage
 
 from ..arguments import RobotOptions
 from . import style
+from .banner_area import BannerArea
 from .scripts import NOTICES
 
-PLOTS_WIDTH, PANEL_WIDTH = 370, 400  # pixels; the six tabs of a robot fit into one row
+PLOTS_WIDTH = 370  # pixels
 NARROW = 0.45  # width of the scene by its height
 
 
@@ -22,9 +23,9 @@ class Layout:
     def __init__(self, server: viser.ViserServer, robots: Sequence[RobotOptions]):
         gui = server.gui
         gui.main_panel.dock_right()
-        gui.main_panel.set_width(PANEL_WIDTH)
+        gui.main_panel.set_width(style.PANEL_WIDTH)
         gui.add_html(style.PAGE + NOTICES)
-        self._banners: Dict[str, Any] = {robot.namespace: gui.add_html("", visible=False) for robot in robots}
+        self.banners = BannerArea(gui)
         self._plots = gui.add_panel()
         self._plots.dock_left()
         self._plots.set_width(PLOTS_WIDTH)
@@ -51,10 +52,6 @@ class Layout:
                     self._plots._placement_uuid, True, counter=gui._next_layout_counter(), run_id=gui._layout_run_id))
 
         client.camera.on_update(check)
-
-    def banner(self, robot: RobotOptions) -> Any:
-        """Returns the element above all tabs, which stays in view when tabs change."""
-        return self._banners[robot.namespace]
 
     def tabs(self, robot: RobotOptions) -> Any:
         """Returns the tab group of a robot: `with layout.tabs(robot).add_tab("State"):`."""

@@ -13,10 +13,18 @@ SCENE = ".mantine-Notifications-root ~ div:not(.mantine-Paper-root):has(canvas)"
 STOP_BUTTON = "div:has(> .stop-style) + div button"
 JOG_BUTTONS = "div:has(> .two-columns) ~ div > button"
 
-# Notifications are at the top left of the scene, STOP at its bottom right.
+PANEL_WIDTH = 400  # pixels; the six tabs of a robot fit into one row
+BANNERS = "banners"  # the class of an element with a child for each
+
+# Notifications are at the top left of the scene, STOP at its bottom right. Banners lie over the scene: above the tabs, they would move the
+# buttons under the pointer.
 PAGE = f"""<style>
 .mantine-Notifications-root {{max-height: calc(100% - 14em); overflow: hidden}}
+.{BANNERS} {{position: fixed; z-index: 300; top: 10px; right: {PANEL_WIDTH + 20}px; width: 26em;
+  max-width: calc(100vw - {PANEL_WIDTH + 40}px); pointer-events: none}}
+.{BANNERS} > div {{color: white; font-weight: 600; padding: 10px 14px; border-radius: 6px; margin-bottom: 6px}}
 {PHONE} {{
+  .{BANNERS} {{top: calc({STOP_HEIGHT} + 6px); left: 6px; right: 6px; width: auto; max-width: none}}
   [style*="width: 20em"]:has(.page-style) {{width: 100vw !important}}
   [style*="max-height: 60%"]:has(.page-style) {{max-height: {SHEET_HEIGHT} !important}}
   {OPEN} [style*="max-height: 60%"]:has(.page-style) {{min-height: {SHEET_HEIGHT} !important}}

@@ -21,7 +21,7 @@ def add_panels(viewer: Any, robot: Any) -> None:
     state_tab, replay_tab = tabs.add_tab("State"), tabs.add_tab("Record" if viewer.options.control else "Replay")
     replay = ReplayPanel(replay_tab, server.gui, _player(viewer, robot, replay_tab), post)
     robot.panels += [
-        Banner(viewer.layout.banner(robot.options), robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
+        Banner(viewer.layout.banners, robot.options.name, robot.topics.name_of("joint_states"), robot.scene),
         StatePanel(state_tab, server.gui, post),
         PlotsPanel(viewer.layout.add_plots_tab(robot.options), server),
         replay]

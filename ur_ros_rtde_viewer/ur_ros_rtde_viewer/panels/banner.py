@@ -1,8 +1,8 @@
-"""Banners above the tabs: what stops the robot, or why nothing is shown, and whether the positions are fake."""
+"""Banners over the scene: what stops the robot, or why nothing is shown, and whether the positions are fake."""
 
-import html
 from typing import Any, List, Optional, Tuple
 
+from ..page.banner_area import BannerArea
 from ..state.robot_state import RobotState
 
 RED, AMBER = "#c62828", "#b26a00"
@@ -41,24 +41,22 @@ def _most_important(state: RobotState, name: str, topic: str, has_model: bool, e
 
 
 def _silence(state: RobotState, name: str, topic: str) -> Tuple[str, str]:
-    return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. The driver has ended or has lost the robot."
+    cause = state.driver.message if state.driver is not None and state.driver.name != "READY" else ""
+    return AMBER, f"{name}: no messages on {topic} for {state.age:.0f} s. {cause or 'The driver has ended or has lost the robot.'}"
 
 
 class Banner:
     """`scene` is the RobotScene, which knows whether the model was found."""
 
-    def __init__(self, element: Any, name: str, topic: str, scene: Any):
-        self._element, self._name, self._topic, self._scene = element, name, topic, scene
+    def __init__(self, area: BannerArea, name: str, topic: str, scene: Any):
+        self._area, self._name, self._topic, self._scene = area, name, topic, scene
         self.shown: List[Tuple[str, str]] = []
 
     def update(self, state: RobotState) -> None:
         shown = banners(state, self._name, self._topic, self._scene.arm is not None, self._scene.error)
         if shown != self.shown:
             self.shown = shown
-            self._element.content = "".join(
-                f"<div style='background:{color};color:white;font-weight:600;padding:10px 14px;border-radius:6px;margin:6px'>"
-                f"{html.escape(text)}</div>" for color, text in shown)
-            self._element.visible = bool(shown)
+            self._area.show(self._name, shown)
 
     def close(self) -> None:
         pass

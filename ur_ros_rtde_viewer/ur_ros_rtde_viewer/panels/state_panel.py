@@ -69,7 +69,7 @@ def signal_rows(state: RobotState) -> List[Tuple[str, str]]:
             ("Analog outputs, A or V", " ".join(f"{value:8.4f}" for value in signals.analog_outputs))]
 
 
-TITLE = "padding:2px 12px 2px 0;opacity:.7;vertical-align:top"
+TITLE = "padding:2px 12px 2px 0;opacity:.7;vertical-align:top;white-space:nowrap"
 TEXT = "white-space:pre-wrap;font-variant-numeric:tabular-nums"
 
 
