@@ -57,7 +57,8 @@ Expected<std::vector<std::string>> Recorder::start(const std::string & file, std
 {
   const std::lock_guard lock(mutex_);
   if (session_) {
-    return failure(ErrorCode::busy, fmt::format("{} is being recorded: stop that first", session_->path()));
+    return failure(ErrorCode::busy,
+                   fmt::format("{} is being recorded: end that first (ur record --stop)", session_->path()));
   }
   if (fields.empty()) {
     fields = {timestamp, "actual_q", "actual_qd", "actual_TCP_pose"};

@@ -57,7 +57,8 @@ Execution TrajectoryCommand<A>::make_execution(const Goal & goal, Run & run) con
   }
   execution.servo = {{goal.lookahead_time, goal.gain}, goal.max_tracking_error};
   execution.on_planned = [&run](const trajectory::Trajectory & plan) {
-    run.result().duration = plan.duration();
+    run.result().duration = run.feedback().time_left =
+        plan.duration();  // that of the approach is not included
   };
   execution.on_setpoint = [&run](const trajectory::Trajectory & plan, const StreamState & state) {
     run.progress(plan.progress(state.time));

@@ -27,8 +27,12 @@ class ExecuteTrajectory : public TrajectoryCommand<ur_ros_rtde_msgs::action::Exe
       require(check, trajectory::check_path(positions_of(goal.waypoints), limits_of(goal)));
     }
     if (const auto sample = check.start(); sample && !goal.approach) {
-      require(check, check_start_position(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
-                                          goal.start_tolerance));
+      Status near = check_start_position(to_joints(goal.waypoints[0].positions), commanded_joints(*sample),
+                                         goal.start_tolerance);
+      if (!near) {
+        near.error().message += ", or set approach: true";
+      }
+      require(check, near);
     }
   }
 

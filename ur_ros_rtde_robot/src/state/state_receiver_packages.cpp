@@ -84,8 +84,9 @@ Error StateReceiver::Impl::monitor(const std::stop_token & stop, ur_rtde::RTDERe
       pause(stop, last_wait);
       if (left() <= Clock::duration::zero()) {
         return {ErrorCode::link_lost,
-                fmt::format("no RTDE package from {} for {} ms: the connection or the controller hangs",
-                            options_.address, silence_limit.count())};
+                fmt::format(
+                    "no RTDE package from {} for {} ms: the connection, the controller or this host hangs",
+                    options_.address, silence_limit.count())};
       }
     }
   }

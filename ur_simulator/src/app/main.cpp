@@ -46,7 +46,11 @@ int main(int argc, char ** argv)
   ur_simulator::AppOptions options;
   CLI::App app;
   ur_simulator::add_options(app, options);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError & error) {  // also of --help
+    return app.exit(error) == 0 ? 0 : 1;
+  }
   try {
     ur_simulator::parse_values(options);
     run_simulator(options);
