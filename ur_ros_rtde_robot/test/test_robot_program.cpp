@@ -69,7 +69,7 @@ TEST_F(RobotProgramTest, WarnsThatItsStartHasZeroedTheForceOfAContact)
 {
   make_both();
   controller.control({{"command", "push"}, {"force", {0.0, 0.0, 40.0}}, {"duration", 60.0}});
-  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_force[2] > 30.0; }, 30s));
+  ASSERT_TRUE(eventually([&] { return robot->latest()->actual_tcp_force[2] > 30.0; }, 90s));
   EXPECT_EQ(log.count("has zeroed the force sensor"), 0U) << log.text();
   controller.control({{"command", "stop_program"}});
   ASSERT_TRUE(becomes_ready_again());
