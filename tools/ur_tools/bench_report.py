@@ -86,9 +86,9 @@ def _machine(results: Results) -> str:
 
 def _draw(layout: Layout, samples: dict) -> List["tuple[str, str]"]:
     """Draws with the Python of the build, which has matplotlib."""
-    command = [str(layout.python), str(ROOT / "tools" / "ur_tools" / "bench_figures.py")]
-    result = subprocess.run(command, input=json.dumps(samples), env={**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"},
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+    command = [str(layout.python), "-m", "ur_tools.bench_figures"]
+    result = subprocess.run(command, cwd=ROOT / "tools", env={**run_environment(layout), "PYTHONDONTWRITEBYTECODE": "1"},
+                            input=json.dumps(samples), stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
     if result.returncode != 0:
         raise console.Failure(f"the figures could not be drawn:\n{console.tail(result.stderr, 10)}")
     return json.loads(result.stdout)

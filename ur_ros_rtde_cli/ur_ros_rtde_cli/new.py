@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 from .actions import plugin_names
 from .errors import CliError, OperationFailed
-from .interface_files import header_name
+from .interface_files import header_name, prefixes
 
 TEMPLATES = pathlib.Path(__file__).parent / "templates"
 # Folders of templates of each kind of plugin, and the default description.
@@ -54,7 +54,8 @@ def create(kind: str, name: str, package: str, folder: pathlib.Path, description
              "MyCommand": _pascal(name), "my_kind": kind, "my_description": description.rstrip(".") or DESCRIPTIONS[kind]}
     escaped = {placeholder: escape(word) for placeholder, word in words.items()}
     target = folder / words["my_package"]
-    if (f"dashboard/{name}" if kind == "dashboard" else name) in plugin_names():
+    is_built = any(prefixes())  # in a shell in which the plugins are found
+    if is_built and (f"dashboard/{name}" if kind == "dashboard" else name) in plugin_names():
         raise CliError(f"a plugin is named {name} already, see `ur plugins`; choose another name")
     if not folder.is_dir():
         raise CliError(f"there is no folder {folder}; create it, or choose another with --directory")

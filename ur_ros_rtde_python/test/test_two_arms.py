@@ -88,16 +88,16 @@ def test_both_arms_start_at_the_same_time(arms):
     cycles = [arm.simulator.state()["cycle"] for arm in arms]
     start_at = time.time() + 2.0 * TIMEOUT_FACTOR
     plans = [trajectory(times, **path, start_at=start_at) for path in paths]
-    stalls = Stalls([process.pid for arm in arms for process in (arm.driver, arm.simulator.process)])
-    goals = [arm.robot.start.follow_joint_trajectory(plan) for arm, plan in zip(arms, plans, strict=True)]
 
     def start_times():
         found = [arm.start_time(cycle) for arm, cycle in zip(arms, cycles, strict=True)]
         return found if None not in found else None
 
-    wait_for(lambda: time.time() > start_at, 20.0, "the time of the start")
-    late = [start - start_at for start in wait_for(start_times, 20.0, "both arms to move")]
-    stall = stalls.seconds()  # for which the host did not let drivers and simulators run
+    with contextlib.closing(Stalls([process.pid for arm in arms for process in (arm.driver, arm.simulator.process)])) as stalls:
+        goals = [arm.robot.start.follow_joint_trajectory(plan) for arm, plan in zip(arms, plans, strict=True)]
+        wait_for(lambda: time.time() > start_at, 20.0, "the time of the start")
+        late = [start - start_at for start in wait_for(start_times, 20.0, "both arms to move")]
+    stall = stalls.between(0, time.time_ns())  # for which the host did not let drivers and simulators run
     wait_for_all(*goals)
     assert min(late) > -CYCLE and max(late) < 0.1 * TIMEOUT_FACTOR + stall, (late, stall)
 
