@@ -23,6 +23,8 @@ import faults  # noqa: E402
 import goals  # noqa: E402
 import journal  # noqa: E402
 import monitor  # noqa: E402
+from stops.cases import LATE_THREADS  # noqa: E402
+from ur_tools import chaos as command  # noqa: E402
 
 
 @contextlib.contextmanager
@@ -69,6 +71,10 @@ def test_options_out_of_range_are_rejected(run_without_build):
     for option in ("--faults=-1", "--clients=0", "--minutes=-2"):
         code, output = run_without_build("chaos", option)
         assert code == 2 and "cannot be negative" in output, output
+
+
+def test_each_case_of_a_late_thread_can_be_repeated():
+    assert command.LATE_THREADS == len(LATE_THREADS)
 
 
 def test_an_address_that_is_a_name_is_rejected(run_without_build):

@@ -7,7 +7,7 @@ Feedback is printed to stderr: one line in place on a terminal, otherwise one li
 --json, stdout has one JSON object per line: {"feedback": ...} for each message, then {"status": ..., "result": ...}, or
 {"rejected": ...}.
 
-Exit code: 0 success, 1 failure (also if no driver answers, or if it ends during the goal), 2 goal rejected or wrong arguments.
+Exit code: 0 success, 1 failure, no driver, or its end during the goal, 2 goal rejected or wrong arguments.
 
 Ctrl-C, SIGTERM, SIGHUP and a closed output cancel the goal: the arm decelerates to standstill, the result is printed, and the exit
 code is 128 plus the number of the signal.

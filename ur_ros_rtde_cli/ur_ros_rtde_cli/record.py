@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=pathlib.Path, nargs="?", help="CSV file on the machine of robot_state_receiver; must not exist")
     parser.add_argument("fields", nargs="*", help="RTDE outputs (default: timestamp actual_q actual_qd actual_TCP_pose)")
     parser.add_argument("--time", type=_duration, default=None, metavar="S", help="duration of the recording (default: until Ctrl-C)")
-    parser.add_argument("--stop", action="store_true", help="end the recording that runs, whoever has started it")
+    parser.add_argument("--stop", action="store_true", help="end the recording that runs, of any client")
     parser.add_argument("--frequency", type=float, default=0.0, metavar="HZ",
                         help="rows per second (default: one for each RTDE package)")
 

@@ -171,7 +171,7 @@ def _running() -> Dict[str, pathlib.Path]:
                 continue
             variables = (process / "environ").read_text(errors="replace").split("\0")
         except OSError:
-            continue  # it has ended, or belongs to somebody else
+            continue  # it has ended, or is of another user
         environment = dict(variable.split("=", 1) for variable in variables if "=" in variable)
         if environment.get("ROS_DOMAIN_ID", "0") == os.environ.get("ROS_DOMAIN_ID", "0"):
             found[process.name] = _log_folder(environment)

@@ -16,8 +16,14 @@ PROFILES: Dict[str, Tuple[str, ...]] = {
     "preempt": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "on_busy:=preempt"),
     "urcap": ("silence_limit:=2.0", "watchdog_frequency:=2.0", "control_mode:=control_urcap"),
 }
-WATCHDOG = {"patient": 0.5, "fast": 0.1, "preempt": 0.5, "urcap": 0.5}  # s, after which it ends a program without signs of life
-SILENCE_LIMIT = {"patient": 2.0, "fast": 0.1, "preempt": 2.0, "urcap": 2.0}  # s, after which a silent connection is found to be dead
+
+
+def _parameter(profile: str, name: str) -> float:
+    return next(float(text.partition(":=")[2]) for text in PROFILES[profile] if text.startswith(f"{name}:="))
+
+
+WATCHDOG = {profile: 1.0 / _parameter(profile, "watchdog_frequency") for profile in PROFILES}  # s; it ends a program without heartbeats
+SILENCE_LIMIT = {profile: _parameter(profile, "silence_limit") for profile in PROFILES}  # s; a silent connection is then found to be dead
 ENUMERATED = 4  # each fourth case is the next one of all pairs of a goal and an event; the others are drawn by their weights
 HELD = 0.4  # of all cases
 WAITING = 0.4  # of the cases in which a goal may wait for the arm

@@ -37,7 +37,7 @@ class Event:
     is_silent: bool = False  # is noticed after the silence_limit
     is_left_to_the_watchdog: bool = False  # of the robot
     cuts_off: bool = False  # the driver no longer sees the arm
-    attempts_to_stop: float = 0.0  # s, for those of the driver that nobody answers
+    attempts_to_stop: float = 0.0  # s, for those of the driver that have no answer
     breaks_off: bool = False  # the motion of the control program, without a deceleration
     stops_robot: bool = False  # the safety system does: no program runs until the operator acts
     ends_waiting: bool = True  # also ends a goal that waits for the arm
@@ -160,7 +160,7 @@ def _unlock(lane) -> None:
 def _release_emergency_stop(lane) -> None:
     lane.simulator.control("emergency_stop", pressed=False)
     wait_for(lambda: _is_normal(lane), RECOVERY_LIMIT, "a normal safety mode")
-    lane.simulator.control("power", to="running")
+    _power_on(lane)
 
 
 def _close_safeguard(lane) -> None:

@@ -185,7 +185,7 @@ class Lane(Robot):
         if case.local:
             self.simulator.control("remote_control", on=False)
         self.sleep_until(at)
-        self._starts = self.program_starts()
+        self.program_has_started()  # those before the event
         self.took_effect = 0
         self.when = case.event.cause(self)
         self.took_effect = max(self.took_effect, self.when)
@@ -216,7 +216,7 @@ class Lane(Robot):
             self._quiet(case, checks)
         assert self.trace is not None
         self.trace.update()
-        checks.program_has_ended = self._keeps_program(case) and bool(self.program_starts() - self._starts)
+        checks.program_has_ended = self.program_has_started() and self._keeps_program(case)
         checks.evaluate(self.trace)
         if case.event.ends_driver:
             assert case.event.recover is not None

@@ -4,7 +4,7 @@ import os
 import pathlib
 import socket
 import time
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 from cell import StatusTrackingClient
 from own_domain import Domain
@@ -36,6 +36,7 @@ class Robot:
         self.driver: Any = None  # Process
         self.simulator = Simulator(address, recovery_time_factor=0.02)
         self._known_lapses = self.simulator.state()["lapses"]
+        self._logged = 0  # number of the newest known entry of the simulator's log
         self.client = StatusTrackingClient(self._domain.number, "stops")
         self.accepted_at = 0  # the newest motion to home, ns since the epoch
         self._spare: Optional[Process] = None
@@ -124,7 +125,7 @@ class Robot:
         self.driver.stop()
         self.simulator.kill()
         self.simulator.start()
-        self._known_lapses = self.simulator.state()["lapses"]
+        self._known_lapses, self._logged = self.simulator.state()["lapses"], 0
         self.restart_driver()
 
     def wait_until_commands_have_returned(self) -> None:
@@ -154,10 +155,11 @@ class Robot:
 
         wait_for(runs, READY_LIMIT, "the control program")
 
-    def program_starts(self) -> Set[int]:
-        """The numbers of the log entries of the simulator, which keeps 1000, about starts of the control program."""
-        text = f"program '{CONTROL_PROGRAM}' started"
-        return {entry["number"] for entry in self.simulator.control("log")["entries"] if entry["text"] == text}
+    def program_has_started(self) -> bool:
+        """Returns whether the control program has started since the last call, according to the log of the simulator."""
+        entries = self.simulator.control("log", after=self._logged)["entries"]
+        self._logged = entries[-1]["number"] if entries else self._logged
+        return any(entry["text"] == f"program '{CONTROL_PROGRAM}' started" for entry in entries)
 
     def new_lapses(self) -> Dict[str, int]:
         """Returns how many motions were broken off, and how many began while the arm moved, since the last call."""
