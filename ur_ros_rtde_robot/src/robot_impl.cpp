@@ -61,6 +61,11 @@ std::string watchdog_frequency_problem(double frequency)
 
 Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
     : options(checked(robot_options)),
+      tracker([this] {
+        return interfaces.has_lost_control()
+                   ? std::optional(Error{ErrorCode::link_lost, control_connection_lost})
+                   : std::nullopt;
+      }),
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
       model(options.address, options.model, log),
@@ -80,7 +85,9 @@ Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
               }},
              log),
       manager(options, state, dashboard, model, interfaces, server, log),
-      scripts(options, state, tracker, activities, stopper, manager, [this] { return generation(); }),
+      scripts(
+          options, state, tracker, activities, stopper, manager, [this] { return generation(); },
+          [this] { return interfaces.has_lost_control(); }),
       extensions(options, state, tracker, registers, control_scripts),
       log_(log),
       watchdog_frequency_(options.watchdog_frequency)
@@ -169,12 +176,8 @@ Error Robot::Impl::program_ended_error() const
                           : "restart the program with the External Control node";
   const double frequency = interfaces.watchdog_frequency();
   if (const double gap = tracker.view().gap; frequency > 0.0 && gap > 1.0 / frequency) {
-    return {
-        ErrorCode::program_stopped,
-        fmt::format(
-            "the watchdog of the control program stopped it: this host sent no heartbeat for {:.0f} ms, at "
-            "most {:.0f} ms are allowed (watchdog_frequency); {}",
-            1e3 * gap, 1e3 / frequency, then)};
+    return {ErrorCode::program_stopped,
+            fmt::format("{}; {}", stopped_by_watchdog("the control program", gap, frequency), then)};
   }
   std::string by = frequency > 0.0
                        ? "on the pendant, by another client, by an error (see the pendant's log), or "
@@ -213,14 +216,12 @@ Status Robot::Impl::motion_possible() const
     }
     auto why = unavailable_error();
     if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
-      why = {ErrorCode::link_lost,
-             "the connection to the control program was lost; it is being re-established"};
+      why = {ErrorCode::link_lost, control_connection_lost};
     }
     return tl::unexpected(std::move(why));
   }
   if (!has_control) {
-    return failure(ErrorCode::link_lost,
-                   "the robot closed the connection to the control program; it is being re-established");
+    return failure(ErrorCode::link_lost, control_connection_lost);
   }
   return {};
 }

@@ -178,8 +178,13 @@ TEST_F(RobotConnectionTest, IsReadyWhileSamplesAreLateOnANewConnection)
 TEST_F(RobotConnectionTest, NoticesThatOnlyTheControlLinkWasDropped)
 {
   make_both();
+  const auto before = robot->generation();
   controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}});
   EXPECT_TRUE(becomes_ready_again());
+  const Status current = robot->is_current(before);
+  ASSERT_FALSE(current);
+  EXPECT_EQ(current.error().code, ErrorCode::link_lost)
+      << "the driver has ended the program: " << current.error().message;
 }
 
 TEST_F(RobotConnectionTest, ReconnectsIoAfterOnlyItsLinkWasDropped)

@@ -50,6 +50,39 @@ TEST_F(ScriptEndTest, DoesNotCountAsFinishedWhenStoppedOnThePendant)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptEndTest, IsALostConnectionIfThatEndsItByItsWatchdog)
+{
+  auto robot_options = test::robot_options();
+  robot_options.watchdog_frequency = 10.0;
+  make_both(robot_options);
+  const auto options = when_it_turns(
+      [&] { controller.control({{"command", "drop_links"}, {"which", "rtde"}, {"clients", "control"}}); });
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.error.code, ErrorCode::link_lost) << report.error.message;
+  EXPECT_TRUE(report.error.message.starts_with("the connection that feeds the watchdog"))
+      << report.error.message;
+  EXPECT_TRUE(is_back());
+}
+
+TEST_F(ScriptEndTest, NamesTheLateHostIfItsWatchdogEndsIt)
+{
+  auto robot_options = test::robot_options();
+  robot_options.watchdog_frequency = 10.0;
+  robot_options.silence_limit = 2000ms;
+  std::atomic<bool> is_late = false;
+  on_sample = [&is_late](const Sample &) {
+    if (is_late.exchange(false)) {
+      std::this_thread::sleep_for(300ms);
+    }
+  };
+  make_both(robot_options);
+  const auto report = run_script(turning(), when_it_turns([&] { is_late = true; }));
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(report.error.message.starts_with("the watchdog of the script stopped it: this host sent"))
+      << report.error.message;
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptEndTest, IsEndedIfItIsPausedSoThatItCannotResume)
 {
   make_both();

@@ -39,6 +39,36 @@ TEST_F(ScriptMonitorTest, EndsAtOnceIfTheScriptIsStoppedBeforeItsFirstLine)
   EXPECT_LT(monitor.report().duration, 2.5) << "not by the limit for the begin";
 }
 
+/// A stop may have to wait for the begin of a script, or for what tells that it will not begin.
+TEST_F(ScriptMonitorTest, ListensOnAfterAStopOfAScriptThatHasBeenSent)
+{
+  controller.start();
+  const auto state = receiver();
+  ASSERT_TRUE(connected(*state));
+  const ScriptMonitor::Markers markers{"begins", "ends"};
+  const auto program = script::make_program("sync()", {false, markers.begin, markers.end, ""});
+  ASSERT_TRUE(program);
+  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);  // closes a connection that is shut down
+  primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", program->name));
+  ScriptOptions options;
+  ScriptMonitor * fenced = nullptr;
+  options.stop_reason = [&fenced, asked = false]() mutable -> std::optional<Error> {
+    if (!std::exchange(asked, true)) {
+      return std::nullopt;  // the script is sent
+    }
+    fenced->fence();
+    return Error{ErrorCode::canceled, "canceled"};
+  };
+  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), *state, markers, options);
+  fenced = &monitor;
+  monitor.run(*program);
+  EXPECT_EQ(monitor.report().end, ScriptEnd::interrupted) << monitor.report().error.message;
+  constexpr int enough = 50;
+  int asked = 0;
+  monitor.read_until_compiled([&asked] { return ++asked == enough; });
+  EXPECT_EQ(asked, enough) << "the connection is closed";
+}
+
 /// The end of a script whose name the controller reports like this, before its first line.
 ScriptReport report_with_name(const StateReceiver & state, const std::string & name,
                               const std::string & reported)

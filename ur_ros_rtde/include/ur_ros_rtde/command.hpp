@@ -185,6 +185,9 @@ template <typename A>
 Outcome Run::call(const std::string & command, const typename A::Goal & goal, typename A::Result & result)
 {
   CommandPlugin * const plugin = find_command(command);
+  if (auto why = stop_reason()) {
+    return *std::move(why);
+  }
   auto * const typed = dynamic_cast<Command<A> *>(plugin);
   if (typed == nullptr) {
     return not_callable(command, plugin != nullptr);

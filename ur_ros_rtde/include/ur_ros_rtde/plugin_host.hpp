@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <rcl_cxx/node.hpp>
 #include <rcl_cxx/server_goal_handle.hpp>
+#include <stop_token>
 #include <string>
 #include <ur_ros_rtde_msgs/msg/goal_rejected.hpp>
 #include <utility>
@@ -134,8 +136,10 @@ class CommandHost : public PluginHost {
   /// The commands that Run::call() finds, by name.
   void add_command(const std::string & name, CommandPlugin & command);
   void remove_command(const std::string & name);
-  /// Null if there is none of that name.
-  CommandPlugin * find_command(const std::string & name) const;
+  /// No command follows.
+  void end_of_commands();
+  /// Waits for it while commands are still being added, at most 10 s. Null if there is none of that name.
+  CommandPlugin * find_command(const std::string & name, const std::stop_token & stop) const;
 
  private:
   Robot & robot_;
@@ -149,6 +153,8 @@ class CommandHost : public PluginHost {
   mutable std::mutex hindrances_mutex_;
   std::map<const void *, Error> hindrances_;  ///< by supervision
   mutable std::mutex commands_mutex_;
+  mutable std::condition_variable_any commands_changed_;
+  bool has_all_commands_ = false;
   std::map<std::string, CommandPlugin *> commands_;
 };
 

@@ -46,7 +46,9 @@ Error not_callable(const std::string & command, bool exists)
 
 CommandPlugin * Run::find_command(const std::string & name) const
 {
-  return context_.command != nullptr ? context_.command->host.find_command(name) : nullptr;
+  return context_.command != nullptr
+             ? context_.command->host.find_command(name, context_.stop_request->token())
+             : nullptr;
 }
 
 Status Run::may_execute(const CalledCommand & called) const

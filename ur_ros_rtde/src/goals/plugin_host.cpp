@@ -7,6 +7,8 @@ namespace {
 
 /// Longer than a request that starts something is under way.
 constexpr std::chrono::milliseconds startup_request_timeout{3500};
+/// Longer than the action servers of all plugins take to start.
+constexpr std::chrono::seconds commands_timeout{10};
 
 }  // namespace
 
@@ -145,8 +147,20 @@ Status CommandHost::may_move() const
 
 void CommandHost::add_command(const std::string & name, CommandPlugin & command)
 {
-  const std::lock_guard lock(commands_mutex_);
-  commands_[name] = &command;
+  {
+    const std::lock_guard lock(commands_mutex_);
+    commands_[name] = &command;
+  }
+  commands_changed_.notify_all();
+}
+
+void CommandHost::end_of_commands()
+{
+  {
+    const std::lock_guard lock(commands_mutex_);
+    has_all_commands_ = true;
+  }
+  commands_changed_.notify_all();
 }
 
 void CommandHost::remove_command(const std::string & name)
@@ -155,9 +169,11 @@ void CommandHost::remove_command(const std::string & name)
   commands_.erase(name);
 }
 
-CommandPlugin * CommandHost::find_command(const std::string & name) const
+CommandPlugin * CommandHost::find_command(const std::string & name, const std::stop_token & stop) const
 {
-  const std::lock_guard lock(commands_mutex_);
+  std::unique_lock lock(commands_mutex_);
+  commands_changed_.wait_for(lock, stop, commands_timeout,
+                             [&] { return has_all_commands_ || commands_.contains(name); });
   const auto found = commands_.find(name);
   return found == commands_.end() ? nullptr : found->second;
 }

@@ -1,4 +1,7 @@
 // Commands that call other commands.
+#include <chrono>
+#include <semaphore>
+#include <stdexcept>
 #include <ur_ros_rtde_msgs/action/move_j_relative.hpp>
 #include <ur_ros_rtde_msgs/action/send_script.hpp>
 #include <ur_ros_rtde_msgs/action/speed_j.hpp>
@@ -51,6 +54,40 @@ class CallsWithoutTheArm : public Command<SendScript> {
     goal.joint_offsets = {0.0, 0.0, 0.0, 0.0, 0.0, 0.2};
     return run.call<MoveJRelative>("move_j_relative", goal);
   }
+};
+
+/// Calls starts_late before that has been started.
+class CallsOneThatStartsLate : public Command<SendScript> {
+ public:
+  static std::binary_semaphore & has_called()
+  {
+    static std::binary_semaphore called{0};
+    return called;
+  }
+
+ private:
+  CommandTraits traits() const override { return {.resource = Resource::io}; }
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    has_called().release();
+    return run.call<SendScript>("starts_late", goal);
+  }
+};
+
+/// Its action server is not started before it has been called.
+class StartsLate : public Command<SendScript> {
+ public:
+  void start_action_server(CommandHost & host, const std::string & name) override
+  {
+    if (!CallsOneThatStartsLate::has_called().try_acquire_for(std::chrono::seconds(20))) {
+      throw std::runtime_error("nothing has called it");
+    }
+    Command::start_action_server(host, name);
+  }
+
+ private:
+  CommandTraits traits() const override { return {.resource = Resource::io}; }
+  Outcome run(const Goal &, Run &) override { return Outcome::success(); }
 };
 
 /// Turns joints for a time, and fails while they turn.
@@ -123,6 +160,8 @@ UR_ROS_RTDE_EXPORT(CallsSpeedJ, "calls_speed_j")
 UR_ROS_RTDE_EXPORT(CallsMoveJRelative, "calls_move_j_relative")
 UR_ROS_RTDE_EXPORT(CallsItself, "calls_itself")
 UR_ROS_RTDE_EXPORT(CallsWithoutTheArm, "calls_without_the_arm")
+UR_ROS_RTDE_EXPORT(CallsOneThatStartsLate, "calls_one_that_starts_late")
+UR_ROS_RTDE_EXPORT(StartsLate, "starts_late")
 UR_ROS_RTDE_EXPORT(LeavesTurning, "leaves_turning")
 UR_ROS_RTDE_EXPORT(MovesOn, "moves_on")
 UR_ROS_RTDE_EXPORT(StartsSpeedL, "starts_speed_l")

@@ -19,6 +19,7 @@ _CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_sp
             "watches_a_door": "WatchesADoor", "tells_frame": "TellsFrame", "waits_for_output": "WaitsForOutput",
             "uses_another_tool": "UsesAnotherTool", "fails_to_set_the_tool": "FailsToSetTheTool", "dashboard/hangs": "Hangs",
             "dashboard/slow_to_check": "DashboardSlowToCheck"}
+_SLOW_TO_START = {"calls_one_that_starts_late": "CallsOneThatStartsLate", "starts_late": "StartsLate"}  # only where a test names them
 
 
 def create_plugin_prefix(prefix, package, description, libraries=()):
@@ -44,7 +45,7 @@ def _base(name):
     return "DashboardPlugin" if name.startswith("dashboard/") else "CommandPlugin"
 
 
-def environment_of_test_commands(prefix):
+def environment_of_test_commands(prefix, classes=None):
     """Creates the prefix of the commands that are built with the tests. Returns the environment in which a driver finds them,
     which is empty if they have not been built."""
     install = pathlib.Path(find_program("ur_ros_rtde", "driver")).parents[2]
@@ -52,16 +53,16 @@ def environment_of_test_commands(prefix):
     library = build / "ur_ros_rtde_commands" / "test" / "plugins" / f"lib{TEST_COMMANDS}.so"
     if not library.is_file():
         return {}
-    classes = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::{_base(name)}"/>'
-                      for name, kind in _CLASSES.items())
-    description = f'<library path="{TEST_COMMANDS}">{classes}</library>'
+    plugins = "".join(f'<class name="{name}" type="ur_ros_rtde::{kind}" base_class_type="ur_ros_rtde::{_base(name)}"/>'
+                      for name, kind in (classes or _CLASSES).items())
+    description = f'<library path="{TEST_COMMANDS}">{plugins}</library>'
     return prepend_path("AMENT_PREFIX_PATH", create_plugin_prefix(prefix, TEST_COMMANDS, description, [library]))
 
 
 @contextlib.contextmanager
 def driver_of_test_commands(simulator, folder, *plugins):
     """Yields a driver with these plugins, which may be the commands of test/plugins. Prints its output at the end."""
-    environment = environment_of_test_commands(folder / "prefix")
+    environment = environment_of_test_commands(folder / "prefix", {**_CLASSES, **_SLOW_TO_START})
     assert environment, "the test commands have not been built"
     driver = start_node("driver", simulator.address, "ur_type:=ur10e", f"plugins:=[{','.join(plugins)}]", env=environment)
     yield driver

@@ -24,14 +24,16 @@ __all__ = ["addresses"]
 def execute(seeds, addresses, log, seconds=SECONDS, is_about_holds=False):
     run = campaign.Campaign(seeds, addresses[:LANES], log, lambda _report: None, seconds)
     run.run()
-    print("\n".join([*campaign.table(run.reports), *campaign.notes(run.descriptions)]))
     for report in run.failed():
         case = next(log.glob(f"lane_*/case_{report['seed']}.txt"), None)
         print(case.read_text() if case else report)
+    print("\n".join([*campaign.table(run.reports), *campaign.notes(run.descriptions)]))
+    for report in run.failed():
+        print(report["seed"], report["case"], *report["violations"], sep="\n    ")
     assert not run.failures
     if is_about_holds and any(description["holds"] != "possible" for description in run.descriptions):
         pytest.skip("threads cannot be held")
-    assert not [(report["seed"], report["case"], report["violations"]) for report in run.failed()]
+    assert not [report["seed"] for report in run.failed()]
     return run.reports
 
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "motion/arrival_detector.hpp"
 #include "motion/motion_blocker.hpp"
@@ -41,6 +44,11 @@ class MotionTracker {
 
   static constexpr double gap_memory = 1.0;  // s
 
+  /// Returns why a program that ends now has ended, if this is known. Must not wait.
+  using Cause = std::function<std::optional<Error>()>;
+
+  explicit MotionTracker(Cause cause = [] { return std::nullopt; }) : cause_(std::move(cause)) {}
+
   /// Ignores a sample that was added before, so that a thread that has just received the newest sample can
   /// add it without waiting for the receiving thread to do so.
   void add(const Sample & sample)
@@ -62,7 +70,8 @@ class MotionTracker {
     arrival_.add(sample, !ended && operation_ends(sample));
     if (ended) {
       end_cause_ = sample.link != view_.link ? Error{ErrorCode::link_lost, connection_replaced}
-                                             : blocker.value_or(Error{});
+                   : blocker                 ? *blocker
+                                             : cause_().value_or(Error{});
     }
     const double gap = view_.sequence == 0 ? 0.0 : seconds_between(received_, sample.received);
     const bool keeps_gap = gap <= view_.gap && sample.controller_time - view_.gap_time < gap_memory;
@@ -120,6 +129,7 @@ class MotionTracker {
            (view_.async.running() || sample.async.operation() != view_.async.operation());
   }
 
+  const Cause cause_;
   mutable std::mutex mutex_;
   StandstillDetector standstill_;
   ArrivalDetector arrival_;

@@ -66,6 +66,14 @@ RobotStatus program_stopped(std::string message)
   return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
 }
 
+std::string stopped_by_watchdog(std::string_view program, double gap, double frequency)
+{
+  return fmt::format(
+      "the watchdog of {} stopped it: this host sent no heartbeat for {:.0f} ms, at most {:.0f} ms are "
+      "allowed (watchdog_frequency)",
+      program, 1e3 * gap, 1e3 / frequency);
+}
+
 RobotStatus program_status(ProgramState state, const ProgramObservation & observation, RuntimeState runtime,
                            const RobotOptions & options)
 {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "program/program_state_machine.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
 #include "ur_ros_rtde_robot/robot_status.hpp"
@@ -13,5 +16,8 @@ RobotStatus program_status(ProgramState state, const ProgramObservation & observ
 
 /// RobotState::stopped with ErrorCode::program_stopped.
 RobotStatus program_stopped(std::string message);
+
+/// Why the watchdog of `program`, of this frequency in Hz, has ended it. `gap`: s without a heartbeat.
+std::string stopped_by_watchdog(std::string_view program, double gap, double frequency);
 
 }  // namespace ur_ros_rtde

@@ -128,7 +128,8 @@ def _suspend_driver(lane) -> int:
     """For longer than every watchdog: it has to stop the arm, and the driver must not move it when it goes on."""
     when = lane.now()
     lane.driver.pause()
-    lane.sleep_until(when + SUSPENSION)
+    lane.took_effect = lane.now()
+    lane.sleep_until(lane.took_effect + SUSPENSION)
     lane.driver.resume()
     return when
 

@@ -37,11 +37,12 @@ LONG_STALL = 0.01  # s
 EARLY_RESULT = 0.03  # s, before the standstill: the last cycles of a stop are slower than what the driver measures
 MODE_BEGIN_LIMIT = 0.15  # s, until an arm that is in a mode brakes
 WINDOW_CYCLES = 30  # after the event, in which the deceleration has to begin
+CYCLES_OF_ACCELERATION = 12  # after the event, before the arm decelerates
 STALL_OF_A_STOP = 0.008  # s; the driver stops the program if a step of its stop is late
 # rad/s^2, m/s^2: of the driver for a stream that it finds to be late, of the controller if a program ends, and of the watchdog. The
 # controller ends a speed motion with the acceleration of its goal.
 OF_OTHER_MEANS = (2.0, 4.0, 10.0)
-OF_LATE_HOST = (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED, ErrorCode.REJECTED_BY_ROBOT)  # whose heartbeats are missing
+OF_LATE_HOST = (ErrorCode.LINK_LOST, ErrorCode.PROGRAM_STOPPED)  # whose heartbeats are missing
 MAX_DRIFT = 0.002  # rad, of a joint, at rest
 SLOW = 0.02  # rad/s and m/s: too slow for a measurement
 
@@ -204,8 +205,7 @@ class Checks:
             wrong = not (is_own_end or self._case.kind.succeeds_if_ended or self._case.event.needs_client)
         else:
             has_code = self._case.kind.type.startswith(goal_kinds.PACKAGE)  # of this driver
-            is_words_of_controller = code == ErrorCode.REJECTED_BY_ROBOT and self._case.event.cuts_off and self._case.kind.runs_script
-            wrong = has_code and code not in self._case.event.codes and not is_words_of_controller
+            wrong = has_code and code not in self._case.event.codes
         if wrong:
             text = f"the goal has the status {status} and the error code {code}"
             self.limit_exceeded(text, LONG_STALL if code in OF_LATE_HOST else math.inf, self._stall_until_rest)
@@ -243,7 +243,8 @@ class Checks:
 
     def _decelerating_time(self, trace: motion.Trace, event: int) -> float:
         """s, an upper bound."""
-        joint, tcp = (max(speeds) for speeds in zip(*trace.speeds[max(0, event - 1):event + 12]))
+        window = CYCLES_OF_ACCELERATION if self._case.event.begin_limit is not None else int(self._rest_limit() / CYCLE)
+        joint, tcp = (max(speeds) for speeds in zip(*trace.speeds[max(0, event - 1):event + window]))
         may_brake_along_path = self._case.event.name == "cancel, then stop" or self._case.waiting is not None
         if self._brakes_along_path() or may_brake_along_path and self._case.kind.space == PATH:
             acceleration, jerk = self._case.kind.limits(self._lane.fields)

@@ -196,6 +196,7 @@ std::shared_ptr<RTDEControlInterface> RtdeInterfaces::activate(std::shared_ptr<R
 {
   const Starts before = starts_;
   starts_ = {before.number + 1, before.after_script + (after_script ? 1 : 0)};
+  lost_control_ = !control && (lost_control_ || (control_ && !control_->isConnected()));
   return std::exchange(control_, std::move(control));
 }
 
@@ -387,6 +388,13 @@ bool RtdeInterfaces::control_heartbeat_lost() const
   constexpr std::chrono::milliseconds heartbeat_timeout(50);
   const auto control = active_or_pending();
   return control && control->getTimeSinceHeartbeat() > heartbeat_timeout;
+}
+
+bool RtdeInterfaces::has_lost_control() const
+{
+  const std::lock_guard lock(mutex_);
+  const auto & control = control_ ? control_ : pending_;
+  return lost_control_ || (control && !control->isConnected());
 }
 
 void RtdeInterfaces::kick_watchdog()

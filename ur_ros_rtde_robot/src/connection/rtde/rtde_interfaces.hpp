@@ -24,6 +24,9 @@ class RTDEIOInterface;
 
 namespace ur_ros_rtde {
 
+inline constexpr const char * control_connection_lost =
+    "the connection to the control program was lost; it is being re-established";
+
 /// Index of the first general purpose register that the driver uses.
 constexpr int register_offset(const RobotOptions & options)
 {
@@ -92,6 +95,8 @@ class RtdeInterfaces {
   /// The control program of the active or pending connection has missed its heartbeat although no command
   /// delays it: a program that runs is another one.
   bool control_heartbeat_lost() const;
+  /// Whether the connection to the newest control program was lost: closed, but not by the driver.
+  bool has_lost_control() const;
   /// Sends a heartbeat to the control program's watchdog. Does not wait for a command under way.
   void kick_watchdog();
   /// Changes the watchdog of the running control program. Until the next one, which has that of the options.
@@ -123,6 +128,7 @@ class RtdeInterfaces {
   mutable std::mutex mutex_;
   std::shared_ptr<ur_rtde::RTDEControlInterface> control_;  ///< active
   std::shared_ptr<ur_rtde::RTDEControlInterface> pending_;
+  bool lost_control_ = false;   ///< the one that was active last
   std::atomic<Starts> starts_;  ///< written with mutex_
   std::atomic<std::uint32_t> failed_starts_ = 0;
   std::atomic<double> watchdog_frequency_ = 0.0;

@@ -95,6 +95,13 @@ ScriptMonitor::ScriptMonitor(PrimaryConnection primary, const StateReceiver & st
 {
 }
 
+void ScriptMonitor::fence() const
+{
+  if (!is_sent_) {
+    primary_.shut_down_sending();
+  }
+}
+
 ScriptReport ScriptMonitor::report() const
 {
   return report_;
@@ -126,6 +133,7 @@ void ScriptMonitor::run(const script::Program & program)
     }
     return;
   }
+  is_sent_ = true;
   while (!update()) {
   }
 }

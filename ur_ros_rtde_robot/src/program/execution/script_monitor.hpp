@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -29,8 +30,9 @@ class ScriptMonitor {
   /// Called when the controller has begun to execute the script, or will not begin: a stop has not to wait
   /// for it any longer.
   std::function<void()> on_compiled = [] {};
-  /// Makes it impossible to send the script. May be called by another thread.
-  void fence() const { primary_.shut_down_sending(); }
+  /// Makes it impossible to send the script. May be called by another thread. A connection that has sent it
+  /// stays open: the controller, which may close one that is shut down, tells what becomes of the script.
+  void fence() const;
   /// Sends the program and waits until it has ended or has to be stopped; see may_be_running().
   void run(const script::Program & program);
   /// After run(): reads on until on_compiled() was called, or `ends`.
@@ -68,6 +70,7 @@ class ScriptMonitor {
   const ScriptOptions & options_;
   const script::Program * program_ = nullptr;
   std::uint32_t link_ = 0;  ///< Sample::link when the program was sent
+  std::atomic<bool> is_sent_ = false;
   bool may_be_running_ = false;
   bool has_played_ = false;  ///< a sample has shown the program running
   bool started_ = false;     ///< the controller has started it, but not executed its first line yet

@@ -8,6 +8,7 @@
 
 #include "connection/primary_connection.hpp"
 #include "program/execution/script_monitor.hpp"
+#include "program/program_status.hpp"
 #include "script/program.hpp"
 #include "state/wait_until.hpp"
 
@@ -82,7 +83,7 @@ class ResumeGuard {
 ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & state,
                            const MotionTracker & tracker, StartedActivities & activities,
                            MotionStopper & stopper, ControlProgramManager & manager,
-                           std::function<Generation()> generation)
+                           std::function<Generation()> generation, std::function<bool()> has_lost_control)
     : options_(options),
       state_(state),
       tracker_(tracker),
@@ -90,6 +91,7 @@ ScriptRunner::ScriptRunner(const RobotOptions & options, const StateReceiver & s
       stopper_(stopper),
       manager_(manager),
       generation_(std::move(generation)),
+      has_lost_control_(std::move(has_lost_control)),
       next_id_(std::random_device()())
 {
 }
@@ -170,6 +172,24 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
   return report;
 }
 
+void ScriptRunner::explain(ScriptReport & report) const
+{
+  const bool was_ended = report.end == ScriptEnd::runtime_error || report.end == ScriptEnd::stopped;
+  const double frequency = options_.watchdog_frequency;
+  if (!was_ended || frequency == 0.0) {
+    return;
+  }
+  if (has_lost_control_()) {
+    report.error = {ErrorCode::link_lost,
+                    fmt::format("the connection that feeds the watchdog of the script was lost; {}",
+                                report.error.message)};
+  } else if (const double gap = tracker_.view().gap; gap > 1.0 / frequency) {
+    report.error = {
+        ErrorCode::program_stopped,
+        fmt::format("{}; {}", stopped_by_watchdog("the script", gap, frequency), report.error.message)};
+  }
+}
+
 ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Program & program,
                                            ScriptMonitor & monitor)
 {
@@ -185,6 +205,7 @@ ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Progra
     throw;
   }
   ScriptReport report = monitor.report();
+  explain(report);
   if (monitor.may_be_running()) {
     const auto stop = stopper_.end(holder, {});
     // The stop waits for a script that the controller still compiles.

@@ -19,7 +19,7 @@ class ScriptRunner {
  public:
   ScriptRunner(const RobotOptions & options, const StateReceiver & state, const MotionTracker & tracker,
                StartedActivities & activities, MotionStopper & stopper, ControlProgramManager & manager,
-               std::function<Generation()> generation);
+               std::function<Generation()> generation, std::function<bool()> has_lost_control);
 
   /// `holder`: of Resource::script; may be null for a secondary program.
   ScriptReport run(Permit * holder, const std::string & script, const ScriptOptions & options);
@@ -30,6 +30,8 @@ class ScriptRunner {
   ScriptReport run_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
   ScriptReport monitor_program(Permit & holder, const script::Program & program, ScriptMonitor & monitor);
   std::string preamble() const;
+  /// If the watchdog of the script has ended it, the controller does not say why.
+  void explain(ScriptReport & report) const;
 
   const RobotOptions options_;
   const StateReceiver & state_;
@@ -38,6 +40,7 @@ class ScriptRunner {
   MotionStopper & stopper_;
   ControlProgramManager & manager_;
   const std::function<Generation()> generation_;
+  const std::function<bool()> has_lost_control_;  ///< RtdeInterfaces::has_lost_control()
   /// Makes the markers of scripts unique; starts at random to differ from those of other processes.
   std::atomic<std::uint32_t> next_id_;
   std::atomic<std::uint32_t> ended_programs_ = 0;
