@@ -110,6 +110,27 @@ TEST_F(ScriptEndTest, IsEndedIfItIsPausedBeforeASampleHasShownItRunning)
   EXPECT_TRUE(is_back());
 }
 
+TEST_F(ScriptEndTest, DoesNotBeginIfTheControlProgramIsPausedBeforeItYields)
+{
+  std::atomic<bool> pauses = false;
+  std::atomic<bool> is_paused = false;
+  on_sample = [&](const Sample &) {
+    if (pauses.exchange(false)) {
+      controller.control({{"command", "pause_program"}});
+      is_paused = true;
+      std::this_thread::sleep_for(100ms);  // the driver does not know it, and asks the program to yield
+    }
+  };
+  make_both();
+  pauses = true;
+  ASSERT_TRUE(eventually([&] { return is_paused.load(); }));
+  const auto report = run_script(turning());
+  EXPECT_EQ(report.end, ScriptEnd::rejected);
+  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+  EXPECT_TRUE(becomes_ready());
+  EXPECT_TRUE(is_back());
+}
+
 TEST_F(ScriptEndTest, MayBePausedIfItsCallerWaits)
 {
   make_both();

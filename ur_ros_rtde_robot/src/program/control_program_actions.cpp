@@ -234,7 +234,12 @@ void ControlProgramManager::suspend_program()
     dispatch(ProgramEvent::yield_failed);  // something else has stopped it; another program may have run
     return;
   }
-  if (snapshot().second.program == ProgramActivity::playing && interfaces_.control_heartbeat_lost()) {
+  const ProgramActivity program = snapshot().second.program;
+  if (program == ProgramActivity::paused) {
+    dispatch(ProgramEvent::yield_failed);  // the operator wants the arm to rest
+    return;
+  }
+  if (program == ProgramActivity::playing && interfaces_.control_heartbeat_lost()) {
     dispatch(ProgramEvent::heartbeat_lost);
     return;
   }
