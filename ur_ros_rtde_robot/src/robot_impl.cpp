@@ -62,9 +62,7 @@ std::string watchdog_frequency_problem(double frequency)
 Robot::Impl::Impl(RobotOptions robot_options, const LogFunction & log)
     : options(checked(robot_options)),
       tracker([this] {
-        return interfaces.has_lost_control()
-                   ? std::optional(Error{ErrorCode::link_lost, control_connection_lost})
-                   : std::nullopt;
+        return interfaces.has_lost_control() ? std::optional(control_connection_lost()) : std::nullopt;
       }),
       state(receiver_options(options), log),
       dashboard(dashboard_options(options), log),
@@ -176,8 +174,7 @@ Error Robot::Impl::program_ended_error() const
                           : "restart the program with the External Control node";
   const double frequency = interfaces.watchdog_frequency();
   if (const double gap = tracker.view().gap; frequency > 0.0 && gap > 1.0 / frequency) {
-    return {ErrorCode::program_stopped,
-            fmt::format("{}; {}", stopped_by_watchdog("the control program", gap, frequency), then)};
+    return stopped_by_watchdog("the control program", gap, frequency, then);
   }
   std::string by = frequency > 0.0
                        ? "on the pendant, by another client, by an error (see the pendant's log), or "
@@ -216,12 +213,12 @@ Status Robot::Impl::motion_possible() const
     }
     auto why = unavailable_error();
     if (why.code == ErrorCode::not_ready) {  // the connection is being re-established
-      why = {ErrorCode::link_lost, control_connection_lost};
+      why = control_connection_lost();
     }
     return tl::unexpected(std::move(why));
   }
   if (!has_control) {
-    return failure(ErrorCode::link_lost, control_connection_lost);
+    return tl::unexpected(control_connection_lost());
   }
   return {};
 }

@@ -66,12 +66,12 @@ RobotStatus program_stopped(std::string message)
   return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
 }
 
-std::string stopped_by_watchdog(std::string_view program, double gap, double frequency)
+Error stopped_by_watchdog(std::string_view program, double gap, double frequency, std::string_view more)
 {
-  return fmt::format(
-      "the watchdog of {} stopped it: this host sent no heartbeat for {:.0f} ms, at most {:.0f} ms are "
-      "allowed (watchdog_frequency)",
-      program, 1e3 * gap, 1e3 / frequency);
+  return {ErrorCode::program_stopped,
+          fmt::format("the watchdog of {} stopped it: this host sent no heartbeat for {:.0f} ms, at most "
+                      "{:.0f} ms are allowed (watchdog_frequency); {}",
+                      program, 1e3 * gap, 1e3 / frequency, more)};
 }
 
 RobotStatus program_status(ProgramState state, const ProgramObservation & observation, RuntimeState runtime,

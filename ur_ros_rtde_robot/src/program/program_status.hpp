@@ -6,6 +6,7 @@
 #include "program/program_state_machine.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
 #include "ur_ros_rtde_robot/robot_status.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
@@ -17,7 +18,7 @@ RobotStatus program_status(ProgramState state, const ProgramObservation & observ
 /// RobotState::stopped with ErrorCode::program_stopped.
 RobotStatus program_stopped(std::string message);
 
-/// Why the watchdog of `program`, of this frequency in Hz, has ended it. `gap`: s without a heartbeat.
-std::string stopped_by_watchdog(std::string_view program, double gap, double frequency);
+/// The watchdog of `program`, of this frequency in Hz, has ended it after `gap` s without a heartbeat.
+Error stopped_by_watchdog(std::string_view program, double gap, double frequency, std::string_view more);
 
 }  // namespace ur_ros_rtde

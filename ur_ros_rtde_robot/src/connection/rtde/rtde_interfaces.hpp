@@ -16,6 +16,7 @@
 #include "ur_ros_rtde_robot/connection/locked.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_rtde {
 class RTDEControlInterface;
@@ -24,8 +25,11 @@ class RTDEIOInterface;
 
 namespace ur_ros_rtde {
 
-inline constexpr const char * control_connection_lost =
-    "the connection to the control program was lost; it is being re-established";
+/// Why a goal ends.
+inline Error control_connection_lost()
+{
+  return {ErrorCode::link_lost, "the connection to the control program was lost; it is being re-established"};
+}
 
 /// Index of the first general purpose register that the driver uses.
 constexpr int register_offset(const RobotOptions & options)

@@ -184,9 +184,7 @@ void ScriptRunner::explain(ScriptReport & report) const
                     fmt::format("the connection that feeds the watchdog of the script was lost; {}",
                                 report.error.message)};
   } else if (const double gap = tracker_.view().gap; gap > 1.0 / frequency) {
-    report.error = {
-        ErrorCode::program_stopped,
-        fmt::format("{}; {}", stopped_by_watchdog("the script", gap, frequency), report.error.message)};
+    report.error = stopped_by_watchdog("the script", gap, frequency, report.error.message);
   }
 }
 
