@@ -39,6 +39,33 @@ TEST_F(ScriptMonitorTest, EndsAtOnceIfTheScriptIsStoppedBeforeItsFirstLine)
   EXPECT_LT(monitor.report().duration, 2.5) << "not by the limit for the begin";
 }
 
+TEST_F(ScriptMonitorTest, EndsAScriptThatIsPausedBeforeItsFirstLine)
+{
+  controller.start();
+  const auto state = receiver();
+  ASSERT_TRUE(connected(*state));
+  controller.control(
+      {{"command", "run_script"}, {"script", "def f():\n  while True:\n    sync()\n  end\nend\n"}});
+  const auto is = [&state](RuntimeState wanted) {
+    return eventually([&] { return state->latest()->runtime_state == wanted; });
+  };
+  ASSERT_TRUE(is(RuntimeState::playing));
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(is(RuntimeState::paused));
+  const auto program = script::make_program("sync()", {false, "begins", "ends", ""});
+  ASSERT_TRUE(program);
+  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);
+  primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", program->name));
+  const ScriptOptions options;
+  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), *state, {"begins", "ends"},
+                        options);
+  bool is_compiled = false;
+  monitor.on_compiled = [&is_compiled] { is_compiled = true; };
+  monitor.run(*program);
+  EXPECT_EQ(monitor.report().end, ScriptEnd::robot_stopped) << monitor.report().error.message;
+  EXPECT_TRUE(monitor.may_be_running() && is_compiled) << "a stop ends it";
+}
+
 /// A stop may have to wait for the begin of a script, or for what tells that it will not begin.
 TEST_F(ScriptMonitorTest, ListensOnAfterAStopOfAScriptThatHasBeenSent)
 {

@@ -216,7 +216,9 @@ void ScriptMonitor::on_message(const PrimaryMessage & message)
       }
       break;
     case PrimaryMessage::Kind::program_started:
-      started_ = started_ || is_program(message.text, program_->name);
+      if (!started_ && is_program(message.text, program_->name)) {
+        started_ = Clock::now();
+      }
       // The begin of the control program may be told late.
       if (options_.kind == ScriptKind::program && !is_program(message.text, program_->name) &&
           message.text != control_program) {
@@ -318,6 +320,7 @@ bool ScriptMonitor::complete_if_it_must_stop()
       return complete(ScriptEnd::robot_stopped, blocker->code, blocker->message);
     }
     if (!options_.may_be_paused && is_paused(*sample)) {
+      on_compiled();  // it may have been paused before its first line
       return complete(ScriptEnd::robot_stopped, ErrorCode::program_stopped,
                       "the program was paused on the pendant or by the dashboard, which ends it");
     }
@@ -344,7 +347,8 @@ bool ScriptMonitor::is_paused(const Sample & sample)
 {
   const bool pauses =
       sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused;
-  if (!begin_seen_ || sample.received <= *begin_seen_ || !pauses) {
+  const auto begin = begin_seen_ ? begin_seen_ : started_;
+  if (!begin || sample.received <= *begin || !pauses) {
     pause_seen_.reset();
     return false;
   }

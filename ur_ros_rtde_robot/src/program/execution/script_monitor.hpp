@@ -73,11 +73,11 @@ class ScriptMonitor {
   std::atomic<bool> is_sent_ = false;
   bool may_be_running_ = false;
   bool has_played_ = false;  ///< a sample has shown the program running
-  bool started_ = false;     ///< the controller has started it, but not executed its first line yet
   bool ended_before_begin_ = false;
   bool messages_left_ = false;  ///< read_messages() has not reached the newest message
   Clock::time_point sent_{};
-  std::optional<Clock::time_point> begin_seen_, end_seen_, error_seen_, pause_seen_, stop_seen_;
+  /// When the controller has started it, executed its first line, and so on.
+  std::optional<Clock::time_point> started_, begin_seen_, end_seen_, error_seen_, pause_seen_, stop_seen_;
   std::string replaced_by_;
   PrimaryMessage error_{};
   std::string error_code_;  ///< with its text, of the newest violation or fault since the script began
