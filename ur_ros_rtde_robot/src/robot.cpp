@@ -204,7 +204,7 @@ Status Robot::run_extension(const Lease & lease, const std::string & name, const
   }
   if (!result && impl_->registers.extension_started()) {
     if (const auto stopped = impl_->stopper.end(*lease.permit_, {}).get(); !stopped) {
-      result.error().message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
+      result.error() = standstill_not_confirmed(result.error(), stopped.error());
     }
   }
   return result;

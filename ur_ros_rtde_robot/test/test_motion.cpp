@@ -93,6 +93,17 @@ struct ArrivalTest : testing::Test {
   }
 };
 
+TEST(StopTest, IsNotConfirmedForTheCauseOfItsGoalWhichIsNamedOnce)
+{
+  const Error canceled{ErrorCode::canceled, "canceled"};
+  const Error lost{ErrorCode::link_lost, "nothing comes from 127.0.0.1"};
+  const Error stop{ErrorCode::link_lost, "cannot tell the robot to stop: nothing comes from 127.0.0.1"};
+  EXPECT_EQ(standstill_not_confirmed(canceled, stop).code, ErrorCode::canceled);
+  EXPECT_EQ(standstill_not_confirmed(canceled, stop).message,
+            "canceled; standstill is not confirmed: " + stop.message);
+  EXPECT_EQ(standstill_not_confirmed(lost, stop).message, "standstill is not confirmed: " + stop.message);
+}
+
 TEST(MotionTrackerTest, CountsAProgramThatIsFoundPausedAsEnded)
 {
   MotionTracker tracker;

@@ -139,8 +139,7 @@ Outcome Run::settle(const CalledCommand & called, const Outcome & outcome, Activ
     options.keep = options.keep | outlasting_modes;
   }
   if (const Status stopped = stop_except_kept(options); !stopped && outcome) {
-    return Outcome::failure(stopped.error().code,
-                            fmt::format("standstill is not confirmed: {}", stopped.error().message));
+    return standstill_not_confirmed({stopped.error().code, {}}, stopped.error());
   }
   return outcome;
 }

@@ -306,9 +306,7 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stopped) {
     return end;
   }
-  const std::string warning = fmt::format("standstill is not confirmed: {}", stopped.error().message);
-  return end ? Outcome::failure(stopped.error().code, warning)
-             : Outcome::failure(end.code(), fmt::format("{}; {}", end.message(), warning));
+  return standstill_not_confirmed(end ? Error{stopped.error().code, {}} : end.error(), stopped.error());
 }
 
 }  // namespace ur_ros_rtde

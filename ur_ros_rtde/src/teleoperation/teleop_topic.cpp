@@ -264,9 +264,7 @@ Outcome TeleopTopic::settle(const Error & why, Activities active_before) const
     options.keep = active_before;
   }
   const auto stopped = host_.robot().end_motion(lease_, options);
-  return stopped ? Outcome(why)
-                 : Outcome::failure(why.code, fmt::format("{}; standstill is not confirmed: {}", why.message,
-                                                          stopped.error().message));
+  return stopped ? why : standstill_not_confirmed(why, stopped.error());
 }
 
 Error TeleopTopic::follow(Run & run, std::uint64_t session, Latency & latency)

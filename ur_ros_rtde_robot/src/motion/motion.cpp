@@ -1,5 +1,7 @@
 #include "ur_ros_rtde_robot/motion/motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,13 @@ const char * to_string(StopMeans means)
       return "program stopped by its watchdog";
   }
   return "unknown";
+}
+
+Error standstill_not_confirmed(const Error & why, const Error & stop)
+{
+  const bool tells_both = stop.message.find(why.message) != std::string::npos;
+  return {why.code, fmt::format("{}{}standstill is not confirmed: {}", tells_both ? "" : why.message,
+                                tells_both ? "" : "; ", stop.message)};
 }
 
 void StandstillDetector::add(const Sample & sample)

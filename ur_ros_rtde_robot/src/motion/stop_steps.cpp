@@ -92,9 +92,10 @@ Expected<StopReport> MotionStopper::stop_without_rtde() const
   if (stopped) {
     return failure(
         ErrorCode::link_lost,
-        fmt::format("the program on the robot was stopped through the dashboard server; standstill cannot be "
-                    "confirmed without the RTDE connection: {}",
-                    link));
+        fmt::format(
+            "the program on the robot was stopped through the dashboard server, and nothing shows the "
+            "arm: {}",
+            link));
   }
   const std::string watchdog =
       watchdog_frequency() > 0.0

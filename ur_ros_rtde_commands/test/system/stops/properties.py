@@ -80,7 +80,7 @@ class Checks:
         if self._lane.preempting_goal is not None:  # its motion follows at once
             return motion.find_stopping(trace, event, event, end, self._column(), rest_cycles=1)
         return motion.find_stopping(trace, event, self._may_begin_until(trace, event), end, self._column(),
-                                    has_pauses=self._case.kind.has_pauses or self._case.waiting is not None)
+                                    has_pauses=self._case.kind.has_pauses or self._case.waiting is not None or self._may_brake_late())
 
     def stall_until(self, trace: motion.Trace, index: int) -> float:
         """For how long the host has not let the programs run between the event and this cycle, s of the robot."""
@@ -103,6 +103,8 @@ class Checks:
         if stopping.moved_again is not None and self._lane.preempting_goal is None:
             speed = trace.speeds[stopping.moved_again]
             self._violation(f"the arm moves again {CYCLE * (stopping.moved_again - stopping.event):.3f} s after the event, {speed}")
+        if self._may_brake_late() and self._is_faster_after_hold(trace, stopping.event):
+            self._violation("after the hold, the arm is faster than at the event")
         if self.drift > MAX_DRIFT:
             self._violation(f"the arm drifts by {self.drift:.4f} rad after the stop")
         limit = self._rest_limit() + CYCLE * (trace.index(self._lane.took_effect) - stopping.event)
@@ -112,6 +114,15 @@ class Checks:
         if stopping.duration > limit:
             self.limit_exceeded(f"at rest {stopping.duration:.3f} s after the event, later than {limit:.3f} s",
                                 stopping.duration - limit, self._stall_until_rest)
+
+    def _may_brake_late(self) -> bool:
+        """Held setpoints of a braking arm let it rest on its path; the others follow."""
+        return self.hold is not None and self._brakes_along_path()
+
+    def _is_faster_after_hold(self, trace: motion.Trace, event: int) -> bool:
+        before, after = event + CYCLES_OF_ACCELERATION, trace.index(self.hold["end"])
+        speeds = [speed for speed, _tcp in trace.speeds]
+        return after > before and max(speeds[after:], default=0.0) > max(speeds[event:before + 1], default=0.0)
 
     def _rest_limit(self) -> float:
         """s, until the arm decelerates."""

@@ -7,6 +7,7 @@
 
 #include "ur_ros_rtde_robot/motion/activity.hpp"
 #include "ur_ros_rtde_robot/state/sample.hpp"
+#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_ros_rtde {
 
@@ -66,6 +67,9 @@ struct StopReport {
 };
 
 // For the driver
+
+/// Of what ends because of `why`, if the stop of the arm fails with `stop`.
+Error standstill_not_confirmed(const Error & why, const Error & stop);
 
 /// Detects standstill from the actual joint velocities of consecutive samples.
 class StandstillDetector {

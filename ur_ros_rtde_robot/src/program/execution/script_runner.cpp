@@ -209,7 +209,7 @@ ScriptReport ScriptRunner::monitor_program(Permit & holder, const script::Progra
     // The stop waits for a script that the controller still compiles.
     monitor.read_until_compiled([&] { return stop.wait_for(milliseconds(0)) == std::future_status::ready; });
     if (const auto stopped = stop.get(); !stopped) {
-      report.error.message += fmt::format("; standstill is not confirmed: {}", stopped.error().message);
+      report.error = standstill_not_confirmed(report.error, stopped.error());
     }
   }
   return report;
