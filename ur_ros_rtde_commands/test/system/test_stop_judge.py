@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from action_msgs.msg import GoalStatus
 from stops import goal_kinds, motion, properties
-from stops.cases import Case
+from stops.cases import Case, HoldPlan
 from stops.events import EVENTS
 from stops.report import Report
 
@@ -41,11 +41,11 @@ def judge(trace, kind="move_j", event="cancel", stall=0.0, result=0.02, outcome=
     fields = {"speed": SPEED, "acceleration": 1.4}
     lane = SimpleNamespace(when=when, took_effect=when, preempting_goal=None, second_request=None, fields=fields,
                            stalls=SimpleNamespace(between=lambda begin, end: stall if begin < end else 0.0), now=lambda: 2 * NS)
-    case = replace(case, **{name: value for name, value in changes.items() if name in ("hold", "waiting", "local")})
+    case = replace(case, hold=HoldPlan(0.01, 0.3, True, 0, 0) if "hold" in changes else None)
     report = Report(0, case.text(), kind.name, event.name, False, moved=moved, outcome=outcome)
     checks = properties.Checks(lane, case, report)
     checks.result_at = trace.published[trace.rest] + round(1e9 * result)
-    for name in ("drift", "program_has_ended", "problems_of_requests"):
+    for name in ("drift", "program_has_ended", "problems_of_requests", "hold"):
         setattr(checks, name, changes.get(name, getattr(checks, name)))
     checks.evaluate(trace)
     return report
@@ -111,3 +111,12 @@ def test_without_a_heartbeat_the_watchdog_has_its_time_and_no_more():
     for latency, is_late in ((240, False), (300, True)):  # cycles; 0.48 and 0.6 s with a watchdog of 0.5 s
         report = judge(MadeUp(latency=latency), event="driver suspended", outcome=(ABORTED, ErrorCode.PROGRAM_STOPPED))
         assert bool(report.violations) == is_late, report
+
+
+@pytest.mark.parametrize("speed, is_wrong", [(0.9 * SPEED, False), (1.1 * SPEED, True)])
+def test_an_arm_that_was_held_while_it_braked_along_its_path_may_brake_on_but_no_faster(speed, is_wrong):
+    trace = MadeUp(then=[speed] * 20)
+    hold = {"end": trace.published[trace.rest + 90]}
+    report = judge(trace, "follow_joint_trajectory", hold=hold, result=0.3, outcome=(CANCELED, 0))
+    assert report.violations == (["after the hold, the arm is faster than at the event"] if is_wrong else []), report
+    assert any("moves again" in violation for violation in judge(trace, hold=hold).violations), "not along a path"

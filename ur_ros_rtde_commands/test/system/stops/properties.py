@@ -117,7 +117,7 @@ class Checks:
 
     def _may_brake_late(self) -> bool:
         """Held setpoints of a braking arm let it rest on its path; the others follow."""
-        return self.hold is not None and self._brakes_along_path()
+        return self.hold is not None and self._brakes_along_path() and self._lane.preempting_goal is None
 
     def _is_faster_after_hold(self, trace: motion.Trace, event: int) -> bool:
         before, after = event + CYCLES_OF_ACCELERATION, trace.index(self.hold["end"])
