@@ -248,8 +248,8 @@ TEST(ProgramStateMachineTest, UploadsOnlyToAStoppedRobotInRemoteControl)
   }
 }
 
-/// A program that begins after the control program has ended is foreign until the robot has stopped it, the
-/// connection is lost or the control program has failed to restart.
+/// A program that begins after the control program has ended is foreign until the robot has stopped it, or
+/// the control program has failed to restart; and if this has not been noticed, until the connection is lost.
 TEST(ProgramStateMachineTest, LeavesAProgramAloneThatReplacedTheControlProgram)
 {
   struct Situation {
@@ -274,11 +274,11 @@ TEST(ProgramStateMachineTest, LeavesAProgramAloneThatReplacedTheControlProgram)
             EXPECT_NE(action, A::stop_program) << to_string(state) << ", " << to_string(event);
             EXPECT_NE(action, A::start_program) << to_string(state) << ", " << to_string(event);
           }
-          const bool connected = event != E::link_lost;
+          const bool keeps = event != E::link_lost || state == S::foreign;
           const bool noticed =
               ((state == S::running || state == S::yielding) && event == E::heartbeat_lost) ||
               (state == S::yielded && event == E::script_replaced);
-          if (connected && on_robot) {
+          if (keeps && on_robot) {
             found.insert({machine.state(), replaced || noticed});
           } else {
             found.insert({machine.state(), false});

@@ -160,6 +160,22 @@ TEST_F(RobotProgramTest, LeavesForeignProgramAloneThatStartsLater)
   EXPECT_TRUE(becomes_ready());
 }
 
+TEST_F(RobotProgramTest, LeavesForeignProgramAloneAfterALostConnection)
+{
+  make_both();
+  controller.run_other_program();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
+  const auto before = robot->generation().link;
+  controller.control({{"command", "drop_links"}, {"which", "rtde"}});
+  ASSERT_TRUE(eventually([&] { return robot->generation().link != before; }));
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped)) << robot->status().message;
+  EXPECT_FALSE(eventually([&] { return controller.state().at("program").at("state") != "PLAYING"; }, 700ms));
+  robot->io()->setStandardDigitalOut(3, true);  // works without the control program
+  EXPECT_TRUE(eventually([&] { return (robot->latest()->digital_outputs & 8U) != 0; }));
+  controller.control({{"command", "stop_program"}});
+  EXPECT_TRUE(becomes_ready());
+}
+
 TEST_F(RobotProgramTest, LeavesForeignProgramAloneThatIsPaused)
 {
   make_both();

@@ -26,7 +26,7 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     {S::ended, E::link_lost, G::stopped, S::disconnected, A::close_interfaces},
     {S::ended, E::link_lost, G::not_stopped, S::program_lost, A::close_interfaces},
     {S::idle, E::link_lost, G::always, S::disconnected, A::close_interfaces},
-    {S::foreign, E::link_lost, G::always, S::disconnected, A::close_interfaces},
+    {S::foreign, E::link_lost, G::always, S::foreign, A::close_interfaces},
     {S::restarting, E::link_lost, G::always, S::disconnected, A::close_interfaces},
     {S::restart_failed, E::link_lost, G::always, S::disconnected, A::close_interfaces},
     {S::in_use, E::link_lost, G::always, S::in_use, A::close_interfaces},
