@@ -242,7 +242,8 @@ Generation Robot::Impl::generation() const
           .robot_stops = view.robot_stops,
           .ended_by_driver = stopper.ended_programs() + scripts.ended_programs(),
           .restarted_by_driver = starts.after_script,
-          .failed_starts = interfaces.failed_starts()};
+          .failed_starts = interfaces.failed_starts(),
+          .replacements = manager.replacements()};
 }
 
 Status Robot::Impl::may_use(const Claim & claim) const

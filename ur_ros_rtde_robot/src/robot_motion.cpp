@@ -94,6 +94,7 @@ Status Robot::is_continued(const Generation & generation) const
   const std::uint32_t by_driver = now.ended_by_driver - generation.ended_by_driver;
   const std::uint32_t restarts = now.restarted_by_driver - generation.restarted_by_driver;
   const bool continued = now.link == generation.link && now.failed_starts == generation.failed_starts &&
+                         now.replacements == generation.replacements &&
                          now.ends - generation.ends == by_driver &&
                          (by_driver > 0 || now.starts - generation.starts <= restarts);
   return continued ? Status() : is_current(generation);

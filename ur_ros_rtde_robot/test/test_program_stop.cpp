@@ -68,6 +68,7 @@ TEST_F(ProgramStopTest, EndsAForeignProgramThatStandsIfAsked)
       "    sleep(0.5)\n"
       "  end\n"
       "end\n";
+  const auto before = robot->generation();
   controller.control({{"command", "run_script"}, {"script", swinging}});
   ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped));
   ASSERT_TRUE(eventually([&] { return !at_rest(); }) && eventually([&] { return at_rest(); }));
@@ -79,6 +80,7 @@ TEST_F(ProgramStopTest, EndsAForeignProgramThatStandsIfAsked)
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->means, StopMeans::program_stopped);
   EXPECT_TRUE(becomes_ready());
+  EXPECT_FALSE(robot->is_continued(before)) << "a goal that has waited since does not begin";
 }
 
 /// Without a control program, with RTDE connections that can stay silent for `silence_limit`.

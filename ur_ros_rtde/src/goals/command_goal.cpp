@@ -46,6 +46,11 @@ bool may_be_consequence(ErrorCode code)
   return code == ErrorCode::rejected_by_robot || code == ErrorCode::exception;
 }
 
+bool is_lost(const Status & status)
+{
+  return !status && status.error().code == ErrorCode::link_lost;
+}
+
 /// For the other goals, if the arm has to be stopped after a successful one.
 Error left_moving(const std::string & action)
 {
@@ -256,13 +261,15 @@ Outcome CommandGoal::leave_modes(const Outcome & outcome)
 Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
 {
   const Resource resource = command_->traits.resource;
+  if (outcome && command_->needs_motion()) {
+    const std::lock_guard lock(lease_mutex_);
+    const Status valid = robot().is_valid(lease_);
+    return is_lost(valid) ? valid : outcome;  // the command has not seen what the arm did
+  }
   if (outcome || !may_be_consequence(outcome.code()) || resource == Resource::script) {
     return outcome;  // a script ends the control program by itself, and its report is precise
   }
   if (resource == Resource::io || command_->traits.allowed_in_any_state) {
-    const auto is_lost = [](const Status & status) {
-      return !status && status.error().code == ErrorCode::link_lost;
-    };
     const Status current = robot().is_current(begin);
     const Status valid = is_lost(current) ? current : robot().is_valid(begin);
     return is_lost(valid) ? valid : outcome;

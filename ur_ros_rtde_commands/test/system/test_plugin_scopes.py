@@ -75,6 +75,15 @@ def test_a_command_is_not_executed_again_before_its_abandoned_goal_has_returned(
     wait_for(lambda: turning(robot, 0.1).accepted, 15.0, "the end of the abandoned goal")
 
 
+def test_a_command_that_has_not_seen_the_loss_of_the_connection_has_not_succeeded(robot, simulator):
+    goal = turning(robot, 1.0)
+    wait_for(lambda: goal.accepted and not simulator.is_at_rest(), 10.0, "a motion")
+    simulator.control("drop_links", which="rtde")
+    result = goal.result(15.0)
+    assert result.error_code == ErrorCode.LINK_LOST, result.message
+    assert simulator.is_at_rest()
+
+
 def open_door(simulator, is_open):
     simulator.control("set_digital_input", number=DOOR, value=is_open)
 

@@ -145,6 +145,8 @@ void ControlProgramManager::process(ProgramEvent event)
   if (const auto action = machine_.process(event, observation_); action != ProgramAction::none) {
     actions_.push_back(action);
   }
+  const bool is_replaced = machine_.state() == ProgramState::foreign && state_ != ProgramState::foreign;
+  replacements_ += is_replaced ? 1 : 0;
   state_ = machine_.state();
 }
 

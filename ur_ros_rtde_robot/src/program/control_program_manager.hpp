@@ -54,6 +54,8 @@ class ControlProgramManager {
   bool has_foreign_program() const;
   /// Says so, if another program has replaced the control program.
   std::optional<Error> replacement() const;
+  /// Number of times that another program has replaced the control program.
+  std::uint32_t replacements() const { return replacements_; }
 
   /// To be called with each sample on the receiving thread.
   void on_sample(const Sample & sample);
@@ -148,6 +150,7 @@ class ControlProgramManager {
   int holds_ = 0;               ///< objects of hold() that exist
 
   std::atomic<ProgramState> state_;  ///< machine_.state(), for the receiving thread
+  std::atomic<std::uint32_t> replacements_ = 0;
   // Receiving thread only.
   Processed processed_;
   std::uint64_t modes_ = 0;

@@ -35,6 +35,7 @@ struct Generation {
   /// Starts of the control program that have failed. An operator may have stopped it before a sample has
   /// shown it running.
   std::uint32_t failed_starts = 0;
+  std::uint32_t replacements = 0;  ///< of the control program by another program
   bool operator==(const Generation &) const = default;
 };
 
