@@ -74,6 +74,11 @@ class DigitalGripper : public ur_ros_rtde::Command<action::DigitalGripper> {
     if (reason) {
       return *reason;
     }
+    const int on = goal.close ? goal.close_output : goal.open_output;
+    if (on >= 0 && ((run.state().digital_outputs >> static_cast<unsigned>(on)) & 1U) == 0) {
+      return Outcome::failure(ErrorCode::not_reached,
+                              fmt::format("output {} was switched off while the fingers moved", on));
+    }
     if (goal.sensor_input < 0 || run.feedback().sensor_reached) {
       return Outcome::success();
     }

@@ -15,5 +15,5 @@ with Robot() as arm:
     try:
         arm.execute_trajectory(waypoints, approach=True, on_progress=lambda progress: print(f"{progress.time_left:.1f} s left"))
     except CommandFailed as failed:  # a protective stop, for example
-        print(failed, failed.remedy)
+        input(f"{failed} {failed.remedy} Remove the cause, then press Enter: ")
         arm.make_ready()

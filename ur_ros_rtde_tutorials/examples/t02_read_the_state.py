@@ -40,11 +40,12 @@ def main():
             next_line += 1.0
             lines += 1
             print(f"{node.samples:4d} samples   height {node.height:7.3f} m   force along the tool {node.force:7.2f} N")
+            node.height = node.force = None  # the next line needs new messages
             node.samples = 0
     node.destroy_node()
     rclpy.try_shutdown()
-    if lines == 0:
-        print("no messages received: check that robot_state_receiver is running and connected to a robot")
+    if lines < 10:
+        print("no more messages are received: check that robot_state_receiver is running and connected to a robot")
     return 0 if lines == 10 else 1
 
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ur_ros_rtde/check_result.hpp>
 #include <ur_ros_rtde/command.hpp>
 #include <ur_ros_rtde_tutorials/action/move_down_until_force.hpp>
 
 namespace ur_ros_rtde_tutorials {
 
 using ur_ros_rtde::Check;
+using ur_ros_rtde::check_result;
 using ur_ros_rtde::ErrorCode;
 using ur_ros_rtde::Outcome;
 using std::chrono_literals::operator""ms;
@@ -20,23 +22,28 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
         .above_zero("distance", goal.distance, 2.0, "m")
         .above_zero("speed", goal.speed, 1.0, "m/s")
         .above_zero("acceleration", goal.acceleration, 10.0, "m/s^2")
-        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2");
+        .in_range("deceleration", goal.deceleration, 0.1, 40.0, "rad/s^2")
+        .polyscope(0);  // a CB3 controller cannot zero the sensor
   }
 
   Outcome run(const Goal & goal, Run & run) override
   {
-    run.control()->zeroFtSensor();
+    check_result(run.control()->zeroFtSensor(), "zero the sensor");
     if (auto stop_reason = run.sleep_for(20ms)) {  // until RTDE packages contain the zeroed force
       return *stop_reason;
     }
     auto goal_pose = run.receive()->getActualTCPPose();
     const double start = goal_pose[2];
     goal_pose[2] -= goal.distance;
+    if (Outcome possible = run.check_again([&](Check & check) { check.reachable("distance", goal_pose); });
+        !possible) {
+      return possible;
+    }
     run.control()->moveL(goal_pose, goal.speed, goal.acceleration, true);
     while (true) {
       const double force = run.flange_force()[2];
       report(goal, run, force, start);
-      if (std::abs(force) > goal.force) {
+      if (!(std::abs(force) <= goal.force)) {  // also if the robot reports none
         run.control()->stopJ(goal.deceleration, true);
         break;
       }

@@ -35,7 +35,11 @@ class SpiralSearch : public ur_ros_rtde::Extension<action::SpiralSearch> {
         contact_force = norm([now[0] - initial_force[0], now[1] - initial_force[1], now[2] - initial_force[2]])
       end
       stopj(2)
-      $out19i(contact_force >= force)
+      if contact_force >= force:
+        $out19i(1)
+      else:
+        $out19i(0)
+      end
       $out19f(pitch * angle)
     )"};
   }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -54,6 +56,8 @@ MoveUntilForce::Goal approach(const action::VacuumPick::Goal & goal, const Sampl
   down.distance = goal.distance;
   down.axes = {false, false, true};
   down.threshold = goal.force;
+  constexpr double reserve = 10.0;  // s
+  down.timeout = goal.distance / goal.speed + reserve;
   return down;
 }
 
@@ -94,18 +98,31 @@ class VacuumPick : public ur_ros_rtde::Command<action::VacuumPick> {
         !touched) {
       return touched;
     }
+    if (Outcome held = hold(run); !held) {
+      return release(run, held);
+    }
+    supervise();
+    return goal.lift > 0.0 ? run.call<MoveLRelative>("move_l_relative", lift(goal)) : Outcome::success();
+  }
+
+  Outcome hold(Run & run) const
+  {
     if (Outcome on = ur_ros_rtde::set_digital_output(run, output_, true); !on) {
       return on;
     }
     const auto is_held = [&] { return bit(run.state().digital_inputs, input_); };
-    if (Outcome held =
-            run.expect(is_held, 2s, "no vacuum within 2 s: there is no part", ErrorCode::not_reached);
-        !held) {
-      static_cast<void>(ur_ros_rtde::set_digital_output(run, output_, false));
-      return held;
-    }
-    supervise();
-    return goal.lift > 0.0 ? run.call<MoveLRelative>("move_l_relative", lift(goal)) : Outcome::success();
+    return run.expect(is_held, 2s, "no vacuum within 2 s: there is no part", ErrorCode::not_reached);
+  }
+
+  /// Returns `why`, with a warning if the vacuum may still be on. A goal that has to end does not wait until
+  /// the robot reports the output.
+  Outcome release(Run & run, const Outcome & why) const
+  {
+    const Outcome off = ur_ros_rtde::set_digital_output(run, output_, false);
+    return off || run.stop_reason()
+               ? why
+               : Outcome::failure(why.code(), fmt::format("{}; the vacuum may still be on: {}", why.message(),
+                                                          off.message()));
   }
 
   /// Stops the arm when the part is lost, until it is put down by switching the vacuum off.

@@ -7,6 +7,7 @@
 #include <ur_ros_rtde/command.hpp>
 #include <ur_ros_rtde/streaming.hpp>
 #include <ur_ros_rtde/target_messages.hpp>
+#include <ur_ros_rtde_robot/state/conversions.hpp>
 #include <ur_ros_rtde_tutorials/action/visual_servo.hpp>
 #include <utility>
 
@@ -21,6 +22,7 @@ using ur_ros_rtde::Status;
 using ur_ros_rtde::StreamOptions;
 using ur_ros_rtde::StreamTarget;
 using ur_ros_rtde::TargetStream;
+using ur_ros_rtde::Vector3;
 using ur_ros_rtde::Vector6;
 
 namespace {
@@ -30,6 +32,21 @@ struct Measurement {
   std::uint64_t number = 0;
   Expected<StreamTarget> target = StreamTarget{};
 };
+
+/// rad, of the orientation.
+constexpr double turn_tolerance = 0.02;
+
+/// How far the axes of the tool are turned: rad, for small angles.
+double turn(const Vector6 & a, const Vector6 & b)
+{
+  double farthest = 0.0;
+  for (const Vector3 & axis : {Vector3{1.0, 0.0, 0.0}, Vector3{0.0, 1.0, 0.0}, Vector3{0.0, 0.0, 1.0}}) {
+    const Vector3 p = rotate(rotation(a), axis);
+    const Vector3 q = rotate(rotation(b), axis);
+    farthest = std::max(farthest, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+  }
+  return farthest;
+}
 
 double distance(const Vector6 & a, const Vector6 & b)
 {
@@ -78,8 +95,10 @@ class VisualServo : public ur_ros_rtde::Command<action::VisualServo> {
         if (Status valid = stream.set(*now.target); !valid) {
           return valid;
         }
-        run.feedback().distance = distance(now.target->values, stream.sample().actual_tcp_pose);
-        const bool is_there = run.feedback().distance <= goal.tolerance;
+        const Vector6 & pose = stream.sample().actual_tcp_pose;
+        run.feedback().distance = distance(now.target->values, pose);
+        const bool is_there =
+            run.feedback().distance <= goal.tolerance && turn(now.target->values, pose) <= turn_tolerance;
         arrival = is_there ? std::min(arrival, stream.sample().controller_time)
                            : std::numeric_limits<double>::infinity();
       }

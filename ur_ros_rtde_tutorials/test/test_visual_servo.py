@@ -1,6 +1,7 @@
 """Tests visual_servo on the simulated robot. The test is the camera."""
 
 import copy
+import math
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -61,6 +62,15 @@ def test_the_arm_follows_a_target_that_moves_and_stays_there(robot, simulator, c
     end, target = result.final_state.tcp_pose.position, camera.target.position
     assert (end.x, end.y, end.z) == pytest.approx((target.x, target.y, target.z), abs=0.004)
     assert simulator.is_at_rest()
+
+
+def test_the_arm_turns_to_a_target_that_differs_in_its_orientation_only(robot, camera):
+    turned = copy.deepcopy(camera.target)
+    q, (sine, cosine) = turned.orientation, (math.sin(0.15), math.cos(0.15))  # 0.3 rad about the z axis of the base
+    q.x, q.y, q.z, q.w = (cosine * q.x - sine * q.y, cosine * q.y + sine * q.x, cosine * q.z + sine * q.w, cosine * q.w - sine * q.z)
+    camera.target = turned
+    end = servo(robot, tolerance=0.003, settling_time=0.0).succeeded(30.0).final_state.tcp_pose.orientation
+    assert abs(end.x * q.x + end.y * q.y + end.z * q.z + end.w * q.w) > math.cos(0.5 * 0.03)
 
 
 def test_the_arm_stops_when_the_camera_is_lost(robot, simulator, camera):

@@ -8,6 +8,7 @@ namespace ur_ros_rtde {
 namespace {
 constexpr double inertia_limit = 133.0;     // kg m^2, limit of the controller
 constexpr double inertia_tolerance = 1e-4;  // kg m^2
+constexpr std::size_t diagonal = 3;         // Ixx, Iyy, Izz
 
 bool has_inertia(const Sample & sample, const std::array<double, 6> & inertia)
 {
@@ -28,7 +29,8 @@ class SetTargetPayload : public Command<ur_ros_rtde_msgs::action::SetTargetPaylo
   {
     check_payload(check, goal.mass, goal.center_of_gravity);
     for (std::size_t i = 0; i < goal.inertia.size(); ++i) {
-      check.in_range(fmt::format("inertia[{}]", i), goal.inertia[i], -inertia_limit, inertia_limit, "kg m^2");
+      const double lowest = i < diagonal ? 0.0 : -inertia_limit;
+      check.in_range(fmt::format("inertia[{}]", i), goal.inertia[i], lowest, inertia_limit, "kg m^2");
     }
     check.polyscope(10);
   }

@@ -16,6 +16,9 @@ using ur_ros_rtde::RobotError;
 /// The fingers have stopped if two states at this interval are equal. It is longer than the cycle in which
 /// the URCap reads the gripper, so that a state from before the motion does not count.
 constexpr std::chrono::milliseconds poll_interval{30};
+/// From the request of a motion to the registers that show it; generously.
+constexpr std::chrono::milliseconds longest_reaction{300};
+constexpr int position_tolerance = 3;  ///< of register POS at the target
 constexpr int action_delayed_fault = 5;
 constexpr int activation_required_fault = 7;
 
@@ -97,8 +100,10 @@ int RobotiqGripper::get(std::string_view name)
   return *value;
 }
 
+/// An answer may be so late that the result of this goal was sent: the gripper belongs to the next one then.
 void RobotiqGripper::set(const std::string & assignments)
 {
+  run_.require_unsent_result();
   if (const auto done = client_.set(assignments); !done) {
     throw RobotError(done.error());
   }
@@ -190,7 +195,7 @@ Outcome RobotiqGripper::move(const RobotiqTarget & target)
   }
   const auto body = [&] {
     const Outcome started = start_motion(target);
-    return started ? until_stopped() : started;
+    return started ? until_stopped(target.position) : started;
   };
   return stop_unless_successful(body, "GTO 0");
 }
@@ -199,25 +204,37 @@ Outcome RobotiqGripper::move(const RobotiqTarget & target)
 Outcome RobotiqGripper::start_motion(const RobotiqTarget & target)
 {
   set(fmt::format("GTO 0 POS {} SPE {} FOR {}", target.position, target.speed, target.force));
-  const Outcome outcome =
+  Outcome outcome =
       until([&](const RobotiqState &) { return get("PRE") == target.position; },
             "the gripper does not confirm the target: check its cable and the settings of the URCap");
+  if (auto reason = run_.stop_reason(); reason && outcome) {
+    outcome = *std::move(reason);  // while the gripper answered
+  }
   if (outcome) {
     set("GTO 1");
   }
   return outcome;
 }
 
-Outcome RobotiqGripper::until_stopped()
+/// OBJ is that of the motion before until the gripper has reacted.
+Outcome RobotiqGripper::until_stopped(int target)
 {
   std::optional<RobotiqState> last;
-  return until(
-      [&last](const RobotiqState & state) {
-        const bool stopped = state.contact != 0 && state == last;
-        last = state;
-        return stopped;
-      },
-      "the fingers are still moving after timeout: increase timeout or speed_fraction");
+  bool has_moved = false;
+  const auto reacted = std::chrono::steady_clock::now() + longest_reaction;
+  const auto stopped = [&](const RobotiqState & state) {
+    if (!state.active()) {
+      throw RobotError(
+          {ErrorCode::rejected_by_robot, "the gripper was deactivated: another client of the URCap uses it"});
+    }
+    has_moved = has_moved || state.contact == 0;
+    const bool is_new = has_moved || std::abs(state.position - target) <= position_tolerance ||
+                        std::chrono::steady_clock::now() >= reacted;
+    const bool rests = state.go_to == 1 && state.contact != 0 && state == last;
+    last = state;
+    return rests && is_new;
+  };
+  return until(stopped, "the fingers are still moving after timeout: increase timeout or speed_fraction");
 }
 
 /// Stops the fingers with `registers` if the body fails or throws. Returns its outcome, with a warning if the
@@ -234,10 +251,13 @@ Outcome RobotiqGripper::stop_unless_successful(const std::function<Outcome()> & 
   if (outcome) {
     return outcome;
   }
-  const auto stopped = client_.set(registers);
-  return stopped ? outcome
-                 : Outcome::failure(outcome.code(), fmt::format("{}; the fingers may still move: {}",
-                                                                outcome.message(), stopped.error().message));
+  try {
+    set(registers);
+    return outcome;
+  } catch (const RobotError & error) {
+    return Outcome::failure(
+        outcome.code(), fmt::format("{}; the fingers may still move: {}", outcome.message(), error.what()));
+  }
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

@@ -61,7 +61,7 @@ class RobotiqGripper {
   using Condition = std::function<bool(const RobotiqState &)>;
   ur_ros_rtde::Outcome until(const Condition & condition, const std::string & otherwise);
   ur_ros_rtde::Outcome start_motion(const RobotiqTarget & target);
-  ur_ros_rtde::Outcome until_stopped();
+  ur_ros_rtde::Outcome until_stopped(int target);
   ur_ros_rtde::Outcome clear();
   ur_ros_rtde::Outcome start_activation();
   ur_ros_rtde::Outcome stop_unless_successful(const std::function<ur_ros_rtde::Outcome()> & body,
