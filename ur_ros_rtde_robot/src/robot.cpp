@@ -176,8 +176,10 @@ ScriptReport Robot::run_script(const Lease & lease, const std::string & script, 
   ScriptReport report = impl_->scripts.run(lease.permit_.get(), script, options_of_holder);
   const bool nothing_is_left = report.end == ScriptEnd::finished || report.end == ScriptEnd::rejected ||
                                report.end == ScriptEnd::compile_error;
-  if (lease && nothing_is_left) {
-    lease.permit_->renew(impl_->generation());  // the script has replaced the control program
+  // The script has replaced the control program. Nothing else may have ended it.
+  if (const Generation now = impl_->generation();
+      lease && nothing_is_left && is_continued(lease.permit_->generation())) {
+    lease.permit_->renew(now);
   }
   return report;
 }

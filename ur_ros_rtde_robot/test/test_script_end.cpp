@@ -110,25 +110,55 @@ TEST_F(ScriptEndTest, IsEndedIfItIsPausedBeforeASampleHasShownItRunning)
   EXPECT_TRUE(is_back());
 }
 
-TEST_F(ScriptEndTest, DoesNotBeginIfTheControlProgramIsPausedBeforeItYields)
+/// The driver does not know yet what the operator has done to the control program when it asks it to yield.
+struct LateScriptTest : ScriptTest {
+  std::atomic<bool> operates = false;
+  std::atomic<bool> has_operated = false;
+
+  void make(const std::string & command, std::chrono::milliseconds lateness)
+  {
+    on_sample = [this, command, lateness](const Sample &) {
+      if (operates.exchange(false)) {
+        controller.control({{"command", command}});
+        has_operated = true;
+        std::this_thread::sleep_for(lateness);
+      }
+    };
+    auto options = robot_options();
+    options.silence_limit = 2000ms;
+    make_both(options);
+  }
+  /// Sends a script right after the operator has acted, and lets its holder try to go on.
+  void expect_rejection()
+  {
+    const auto lease = robot->acquire(claim(Resource::script));
+    ASSERT_TRUE(lease);
+    operates = true;
+    ASSERT_TRUE(eventually([&] { return has_operated.load(); }));
+    const auto report = robot->run_script(*lease, turning());
+    EXPECT_EQ(report.end, ScriptEnd::rejected);
+    EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
+    EXPECT_TRUE(eventually([&] { return robot->ready_to_move().has_value(); }));
+    EXPECT_FALSE(robot->may_continue(*lease));
+  }
+};
+
+TEST_F(LateScriptTest, DoesNotBeginAfterAPauseOfTheControlProgram)
 {
-  std::atomic<bool> pauses = false;
-  std::atomic<bool> is_paused = false;
-  on_sample = [&](const Sample &) {
-    if (pauses.exchange(false)) {
-      controller.control({{"command", "pause_program"}});
-      is_paused = true;
-      std::this_thread::sleep_for(100ms);  // the driver does not know it, and asks the program to yield
-    }
-  };
-  make_both();
-  pauses = true;
-  ASSERT_TRUE(eventually([&] { return is_paused.load(); }));
-  const auto report = run_script(turning());
-  EXPECT_EQ(report.end, ScriptEnd::rejected);
-  EXPECT_EQ(report.error.code, ErrorCode::program_stopped) << report.error.message;
-  EXPECT_TRUE(becomes_ready());
-  EXPECT_TRUE(is_back());
+  make("pause_program", 100ms);
+  expect_rejection();
+}
+
+TEST_F(LateScriptTest, DoesNotBeginAfterAPauseThatIsSeenLate)
+{
+  make("pause_program", 400ms);
+  expect_rejection();
+}
+
+TEST_F(LateScriptTest, DoesNotBeginAfterAStopThatIsSeenLate)
+{
+  make("stop_program", 400ms);
+  expect_rejection();
 }
 
 TEST_F(ScriptEndTest, MayBePausedIfItsCallerWaits)
@@ -279,6 +309,26 @@ TEST_F(ScriptEndTest, StopsAtItsTimeLimitWhileItWritesFasterThanTheCallbackRetur
       run_script("def f():\n  while True:\n    textmsg(\"x\")\n    sync()\n  end\nend\n", options);
   EXPECT_EQ(report.end, ScriptEnd::timeout) << report.error.message;
   EXPECT_LT(Clock::now() - begin, 10s);
+}
+
+TEST_F(ScriptEndTest, IsEndedByItsWatchdogIfItBeginsLongAfterAStopInLocalControl)
+{
+  auto robot_options = test::robot_options();
+  robot_options.watchdog_frequency = 1.0;
+  make_both(robot_options);
+  controller.control({{"command", "compile_time"}, {"seconds", 1.0}});
+  ScriptOptions options;
+  options.stop_reason = [calls = 0, this]() mutable -> std::optional<Error> {
+    if (calls++ > 0) {  // it was sent
+      controller.control({{"command", "remote_control"}, {"on", false}});
+      return Error{ErrorCode::canceled, "canceled"};
+    }
+    return std::nullopt;
+  };
+  const auto report = run_script(turning(), options);
+  EXPECT_EQ(report.error.code, ErrorCode::canceled) << report.error.message;
+  EXPECT_TRUE(at_rest());
+  EXPECT_FALSE(eventually([&] { return !at_rest(); }, 1500ms)) << "it begins after its end";
 }
 
 TEST_F(ScriptEndTest, IsEndedIfItBeginsLongAfterTheStop)

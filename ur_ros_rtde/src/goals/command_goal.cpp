@@ -266,8 +266,11 @@ Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
     const Status valid = robot().is_valid(lease_);
     return is_lost(valid) ? valid : outcome;  // the command has not seen what the arm did
   }
-  if (outcome || !may_be_consequence(outcome.code()) || resource == Resource::script) {
-    return outcome;  // a script ends the control program by itself, and its report is precise
+  // A script and an error of an extension end the control program, and their reports are precise.
+  const bool is_precise = resource == Resource::script ||
+                          (command_->is_extension && outcome.code() == ErrorCode::rejected_by_robot);
+  if (outcome || is_precise || !may_be_consequence(outcome.code())) {
+    return outcome;
   }
   if (resource == Resource::io || command_->traits.allowed_in_any_state) {
     const Status current = robot().is_current(begin);

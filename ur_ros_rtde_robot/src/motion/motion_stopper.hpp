@@ -133,6 +133,7 @@ class MotionStopper {
   Expected<StopMeans> end_program_that_may_go_on(StopMeans means, const StopOptions & options);
   Status end_program(const StopOptions & options);
   Status stop_script(const MotionTracker::View & before);
+  bool script_begins(const MotionTracker::View & before) const;
   Status request_program_stop(bool end_is_seen) const;
   /// After a command that ends it. `program`: MotionTracker::View::program before; `timeout` in s.
   Status wait_for_program_end(std::uint32_t program, double timeout);

@@ -270,29 +270,37 @@ Status MotionStopper::stop_by_dashboard(const StopOptions & options)
              : failure(ErrorCode::timeout, "the arm moves although its program was stopped");
 }
 
+/// Waits for the begin of a script that was sent, or for what tells that it will not begin. False if there is
+/// no such script, or no longer. `before`: no program ran.
+bool MotionStopper::script_begins(const MotionTracker::View & before) const
+{
+  const auto has_script = [this] { return activities_.now().contains(Activity::script); };
+  const double limit = std::chrono::duration<double>(StartedActivities::Script::begin_limit).count();
+  return has_script() &&
+         wait_for(limit,
+                  [&](const Sample &) {
+                    const auto view = tracker_.view();
+                    return view.program_running || view.program != before.program ||
+                           activities_.script_compiled() || !has_script();
+                  }) &&
+         has_script();
+}
+
 /// A stop ends nothing while the controller still compiles a script, which begins afterwards. `before`: no
 /// program ran.
 Status MotionStopper::stop_script(const MotionTracker::View & before)
 {
-  const auto has_script = [this] { return activities_.now().contains(Activity::script); };
   const bool begun = activities_.script_compiled();
-  const double limit = std::chrono::duration<double>(StartedActivities::Script::begin_limit).count();
-  const auto begins = [&](const Sample &) {
-    const auto view = tracker_.view();
-    return view.program_running || view.program != before.program || activities_.script_compiled() ||
-           !has_script();
-  };
   Status stopped = request_program_stop(true);
-  if (stopped && !begun && has_script() && wait_for(limit, begins) && has_script()) {
+  if (stopped && !begun && script_begins(before)) {
     stopped = request_program_stop(true);
   }
   if (!stopped) {
     return stopped;
   }
   const std::uint64_t sequence = tracker_.view().sequence + sample_delay;
-  const bool ended = wait_for(program_stop_timeout, [&](const Sample &) {
-    const auto view = tracker_.view();
-    return view.sequence >= sequence && !view.program_running;
+  const bool ended = wait_for(program_stop_timeout, [&](const Sample & sample) {
+    return sample.sequence >= sequence && sample.runtime_state == RuntimeState::stopped;  // not paused
   });
   ended_programs_ += tracker_.view().program != before.program ? 1 : 0;
   return ended ? Status() : failure(ErrorCode::timeout, "the script was stopped, but has not ended");
@@ -312,20 +320,22 @@ Status MotionStopper::wait_for_program_end(std::uint32_t program, double timeout
 
 Status MotionStopper::stop_by_watchdog(const StopOptions & options)
 {
-  const bool runs = tracker_.view().program_running;
+  const auto before = tracker_.view();
   interfaces_.close_control();
   const double frequency = watchdog_frequency();
   if (frequency == 0.0) {
     return failure(ErrorCode::not_supported, "the program has no watchdog (watchdog_frequency: 0)");
   }
+  const bool begins = !before.program_running && script_begins(before);
+  const std::uint64_t sequence = tracker_.view().sequence + (begins ? sample_delay : 0);
   // Until its end, the program may move the arm again.
-  const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [](const Sample & sample) {
-    return sample.runtime_state == RuntimeState::stopped;
+  const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [sequence](const Sample & sample) {
+    return sample.sequence >= sequence && sample.runtime_state == RuntimeState::stopped;
   });
   if (!ended) {
     return failure(ErrorCode::timeout, "the watchdog of the program has not ended it");
   }
-  ended_programs_ += runs ? 1 : 0;
+  ended_programs_ += before.program_running ? 1 : 0;
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although the watchdog has ended its program");

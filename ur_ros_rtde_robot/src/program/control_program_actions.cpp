@@ -113,6 +113,10 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
 {
   wait_after_failed_start();
   wait_while_held();
+  if (const auto blocker = motion_blocker(receiver_.latest().value_or(Sample{}))) {
+    dispatch(ProgramEvent::start_aborted);
+    return stopped_by(*blocker);
+  }
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }
@@ -225,25 +229,28 @@ bool ControlProgramManager::wait_for_program(ProgramActivity program, millisecon
 
 void ControlProgramManager::suspend_program()
 {
+  const auto yielded = [this] {  // an operator who has paused the program wants the arm to rest
+    dispatch(was_paused_ ? ProgramEvent::yield_failed : ProgramEvent::program_yielded);
+  };
   if (interfaces_.suspend_control() && wait_for_program(ProgramActivity::stopped, program_end_timeout)) {
-    dispatch(ProgramEvent::program_yielded);
+    yielded();
     return;
   }
-  // The samples come over another connection than what the control interface has seen.
-  if (wait_for_program(ProgramActivity::stopped, max_skew)) {
+  // The samples come over another connection than what the control interface has seen, and may be late.
+  const bool is_stopped = wait_for_program(ProgramActivity::stopped, max_skew);
+  if (is_stopped || was_paused_ || !interfaces_.pending_program_plays()) {
     dispatch(ProgramEvent::yield_failed);  // something else has stopped it; another program may have run
     return;
   }
-  const ProgramActivity program = snapshot().second.program;
-  if (program == ProgramActivity::paused) {
-    dispatch(ProgramEvent::yield_failed);  // the operator wants the arm to rest
-    return;
-  }
-  if (program == ProgramActivity::playing && interfaces_.control_heartbeat_lost()) {
+  if (interfaces_.control_heartbeat_lost()) {
     dispatch(ProgramEvent::heartbeat_lost);
     return;
   }
-  dispatch(end_program() ? ProgramEvent::program_yielded : ProgramEvent::yield_failed);
+  if (end_program()) {
+    yielded();
+  } else {
+    dispatch(ProgramEvent::yield_failed);
+  }
 }
 
 ControlProgramManager::Outcome ControlProgramManager::connect_control()

@@ -31,6 +31,7 @@ Status ControlProgramManager::yield(milliseconds timeout)
   if (status_.state != RobotState::ready) {
     return failure(status_.cause, status_.message);
   }
+  was_paused_ = false;
   process(ProgramEvent::yield_requested);
   const auto request = request_cycle();
   changed_.wait_until(lock, stop, deadline, [&] { return handled_ >= request; });

@@ -19,11 +19,6 @@ using std::chrono::milliseconds;
 /// Stop, start and the check of the result take three passes.
 constexpr int passes_per_cycle = 8;
 
-RobotStatus stopped_by(const Error & error)
-{
-  return {RobotState::stopped, error.code, error.message};
-}
-
 /// Everything that triggers a cycle, in one number.
 std::uint64_t modes_of(const Sample & sample)
 {
@@ -162,6 +157,9 @@ void ControlProgramManager::on_sample(const Sample & sample)
   // A program that replaces another one leaves no trace in the runtime state.
   const bool heartbeat_lost = now.state == ProgramState::running && sample.is_program_running() &&
                               interfaces_.control_heartbeat_lost();
+  if (now.state == ProgramState::yielding && now.program == ProgramActivity::paused) {
+    was_paused_ = true;
+  }
   if (now != processed_ || heartbeat_lost) {
     const std::lock_guard lock(mutex_);
     if (sample.link == link_) {
@@ -289,7 +287,8 @@ ControlProgramManager::Outcome ControlProgramManager::examine_once()
   if (auto failed = follow_program(!blocker)) {
     return failed;
   }
-  if (auto status = check_robot(blocker)) {
+  if (auto status =
+          check_robot(motion_blocker(receiver_.latest().value_or(*sample)))) {  // it may have waited
     return status;
   }
   return claim_robot();

@@ -151,6 +151,7 @@ class ControlProgramManager {
 
   std::atomic<ProgramState> state_;  ///< machine_.state(), for the receiving thread
   std::atomic<std::uint32_t> replacements_ = 0;
+  std::atomic<bool> was_paused_ = false;  ///< the control program, while it was to yield
   // Receiving thread only.
   Processed processed_;
   std::uint64_t modes_ = 0;

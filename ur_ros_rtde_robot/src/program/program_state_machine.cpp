@@ -61,7 +61,8 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     {S::yielding, E::yield_rejected, G::always, S::running, A::none},
     {S::yielding, E::heartbeat_lost, G::always, S::foreign, A::close_control},
     {S::yielding, E::yield_failed, G::stopped, S::idle, A::close_control},
-    {S::yielding, E::yield_failed, G::not_stopped, S::orphaned, A::close_control},
+    {S::yielding, E::yield_failed, G::paused, S::ended, A::close_control},
+    {S::yielding, E::yield_failed, G::playing, S::orphaned, A::close_control},
     {S::yielding, E::yield_canceled, G::always, S::orphaned, A::close_control},
     {S::yielding, E::program_yielded, G::always, S::yielded, A::none},
     {S::yielded, E::resume_requested, G::always, S::resuming, A::none},
@@ -73,7 +74,7 @@ constexpr auto transitions = std::to_array<ProgramTransition>({
     {S::resuming, E::start_failed, G::always, S::unclaimed, A::none},
     {S::resuming, E::start_aborted, G::always, S::unclaimed, A::none},
     {S::resuming, E::resume_blocked, G::stopped, S::unclaimed, A::none},
-    {S::resuming, E::resume_blocked, G::not_stopped, S::orphaned, A::none},
+    {S::resuming, E::resume_blocked, G::not_stopped, S::orphaned, A::close_control},
     {S::resuming, E::inputs_in_use, G::always, S::in_use, A::close_interfaces},
 
     // The control program has ended.

@@ -66,6 +66,11 @@ RobotStatus program_stopped(std::string message)
   return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
 }
 
+RobotStatus stopped_by(const Error & error)
+{
+  return {RobotState::stopped, error.code, error.message};
+}
+
 Error stopped_by_watchdog(std::string_view program, double gap, double frequency, std::string_view more)
 {
   return {ErrorCode::program_stopped,

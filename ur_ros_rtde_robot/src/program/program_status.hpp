@@ -18,6 +18,8 @@ RobotStatus program_status(ProgramState state, const ProgramObservation & observ
 /// RobotState::stopped with ErrorCode::program_stopped.
 RobotStatus program_stopped(std::string message);
 
+RobotStatus stopped_by(const Error & error);
+
 /// The watchdog of `program`, of this frequency in Hz, has ended it after `gap` s without a heartbeat.
 Error stopped_by_watchdog(std::string_view program, double gap, double frequency, std::string_view more);
 

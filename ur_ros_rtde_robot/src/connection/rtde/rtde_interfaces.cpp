@@ -276,6 +276,12 @@ bool RtdeInterfaces::has_pending_control() const
   return pending_ != nullptr;
 }
 
+bool RtdeInterfaces::pending_program_plays() const
+{
+  const std::lock_guard lock(mutex_);
+  return pending_ && pending_->isConnected() && pending_->isProgramRunning();
+}
+
 bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
 {
   std::shared_ptr<RTDEControlInterface> control;

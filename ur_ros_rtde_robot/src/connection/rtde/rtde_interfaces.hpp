@@ -73,6 +73,8 @@ class RtdeInterfaces {
   bool suspend_control();
   /// Whether there is a pending connection.
   bool has_pending_control() const;
+  /// Whether it is open and shows a program that plays. Its packages are received by a thread of its own.
+  bool pending_program_plays() const;
   /// Closes the active or pending connection. A command that waits in it returns. When this returns, the
   /// robot accepts another control interface, unless a thread has kept this one for a second.
   void close_control();

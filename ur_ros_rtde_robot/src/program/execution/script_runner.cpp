@@ -164,8 +164,13 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
   if (const Generation now = generation_(); now.link != begin.link || now.starts != begin.starts + 1) {
     return rejected(program_ended());
   }
+  const auto before = tracker_.view().program;
   ScriptReport report = monitor_program(holder, program, monitor);
-  ended_programs_ += report.end == ScriptEnd::finished ? 1 : 0;
+  if (report.end == ScriptEnd::finished) {  // a script of one cycle leaves no trace in the samples
+    wait_until(state_, standstill_timeout,
+               [this](const Sample & sample) { return tracker_.view().sequence >= sample.sequence; });
+    ended_programs_ += tracker_.view().program != before ? 1 : 0;
+  }
   if (holder.revoked()) {  // the stop under way must not meet the control program
     stopper_.end(holder, {}).wait();
   }
