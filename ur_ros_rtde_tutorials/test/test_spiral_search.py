@@ -46,6 +46,13 @@ def test_cancel_ends_the_loop_on_the_controller_and_stops_the_arm(robot, simulat
     robot.send(MoveJ, "move_j", joint_positions=HOME, speed=2.0).succeeded()
 
 
+def test_an_error_of_the_snippet_is_the_reason(robot):
+    stretched = [HOME[0], -1.2, 0.05, -0.4, HOME[4], HOME[5]]
+    robot.send(MoveJ, "move_j", joint_positions=stretched, speed=2.0).succeeded()
+    result = search(robot, radius=0.05).result(60.0)
+    assert result.error_code == ErrorCode.REJECTED_BY_ROBOT and "spiral_search" in result.message, result.message
+
+
 def test_a_protective_stop_aborts_with_its_error_code(robot, simulator):
     goal = search(robot, radius=0.05)
     wait_for(lambda: not simulator.state()["at_rest"], 20.0, "the arm to move")

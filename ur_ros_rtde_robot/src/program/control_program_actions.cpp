@@ -6,6 +6,7 @@
 
 #include "connection/dashboard_request.hpp"
 #include "connection/skew.hpp"
+#include "motion/motion_blocker.hpp"
 #include "program/control_program_manager.hpp"
 #include "program/program_status.hpp"
 
