@@ -65,6 +65,21 @@ TEST_F(RobotProgramTest, DoesNotStopAProgramThatBeginsBeforeItsOwnIsSent)
   EXPECT_EQ(controller.state().at("program").at("state"), "PLAYING");
 }
 
+TEST_F(RobotProgramTest, DoesNotReplaceAProgramThatBeginsAndIsPausedBeforeItsOwnIsSent)
+{
+  make_both();
+  auto hold = robot->hold_program();
+  controller.control({{"command", "stop_program"}});
+  ASSERT_TRUE(eventually([&] { return !robot->latest()->is_program_running(); }));
+  controller.run_other_program();
+  controller.control({{"command", "pause_program"}});
+  ASSERT_TRUE(eventually([&] { return robot->latest()->runtime_state == RuntimeState::paused; }));
+  hold.reset();
+  ASSERT_TRUE(comes_to(RobotState::stopped, ErrorCode::program_stopped)) << log.text();
+  EXPECT_EQ(controller.state().at("program").at("name"), "other");
+  EXPECT_EQ(controller.state().at("program").at("state"), "PAUSED");
+}
+
 TEST_F(RobotProgramTest, WarnsThatItsStartHasZeroedTheForceOfAContact)
 {
   make_both();

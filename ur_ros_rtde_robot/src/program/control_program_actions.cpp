@@ -118,6 +118,10 @@ ControlProgramManager::Outcome ControlProgramManager::start_program()
     dispatch(ProgramEvent::start_aborted);
     return stopped_by(*blocker);
   }
+  if (snapshot().second.program != ProgramActivity::stopped) {  // another one has begun, and may be paused
+    dispatch(ProgramEvent::start_aborted);
+    return std::nullopt;
+  }
   if (!interfaces_.has_pending_control()) {
     set_status({RobotState::connecting, ErrorCode::not_ready, "starting the control program"});
   }

@@ -126,6 +126,7 @@ void ScriptMonitor::run(const script::Program & program)
       (options_.kind == ScriptKind::program && replaced_before_begin())) {
     return;
   }
+  error_seen_.reset();  // of another program
   if (const auto sent = primary_.send(program.text.text(), send_timeout); !sent) {
     if (!complete_if_told(ScriptEnd::rejected)) {
       complete(ScriptEnd::link_lost, sent.error().code,
