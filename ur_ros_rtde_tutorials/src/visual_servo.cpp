@@ -18,6 +18,8 @@ using ur_ros_rtde::Check;
 using ur_ros_rtde::CommandHost;
 using ur_ros_rtde::Expected;
 using ur_ros_rtde::Outcome;
+using ur_ros_rtde::rotate;
+using ur_ros_rtde::rotation;
 using ur_ros_rtde::Status;
 using ur_ros_rtde::StreamOptions;
 using ur_ros_rtde::StreamTarget;
