@@ -13,6 +13,7 @@ from ur_ros_rtde_msgs.msg import ErrorCode
 
 PLUGINS = "plugins:=[move_j,stop,robotiq_open,robotiq_close]"
 PORT = 63352
+SIMULATOR_ARGUMENTS = ("--ports", "robotiq=0")  # leaves PORT to the URCap of the test
 REACTION = 0.2  # s, from GTO 1 to the registers that show the motion
 MOTION = 0.2  # s
 

@@ -66,7 +66,7 @@ class CallsOneThatStartsLate : public Command<SendScript> {
   }
 
  private:
-  CommandTraits traits() const override { return {.resource = Resource::io}; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
   Outcome run(const Goal & goal, Run & run) override
   {
     has_called().release();
@@ -86,7 +86,7 @@ class StartsLate : public Command<SendScript> {
   }
 
  private:
-  CommandTraits traits() const override { return {.resource = Resource::io}; }
+  CommandTraits traits() const override { return {.resource = Resource::none}; }
   Outcome run(const Goal &, Run &) override { return Outcome::success(); }
 };
 
