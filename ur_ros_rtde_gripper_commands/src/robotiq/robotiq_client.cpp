@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -85,13 +87,13 @@ Expected<int> RobotiqClient::get(std::string_view name)
     return tl::unexpected(reply.error());
   }
   std::string_view text = *reply;
-  if (text.starts_with(name)) {
-    text.remove_prefix(name.size());
-  }
+  const bool is_named = text.starts_with(name);  // another one is the late answer to another request
+  text.remove_prefix(is_named ? name.size() : 0);
   text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size()) {
+  const bool is_register = value >= 0 && value <= std::numeric_limits<std::uint8_t>::max();
+  if (is_named && is_register && error == std::errc() && end == text.data() + text.size()) {
     return value;
   }
   if (text.starts_with('?')) {

@@ -27,8 +27,8 @@ const char * to_string(StopMeans means)
 Error standstill_not_confirmed(const Error & why, const Error & stop)
 {
   const bool tells_both = stop.message.find(why.message) != std::string::npos;
-  return {why.code, fmt::format("{}{}standstill is not confirmed: {}", tells_both ? "" : why.message,
-                                tells_both ? "" : "; ", stop.message)};
+  const std::string cause = tells_both ? "" : why.message + "; ";
+  return {why.code, fmt::format("{}standstill is not confirmed: {}", cause, stop.message)};
 }
 
 void StandstillDetector::add(const Sample & sample)

@@ -18,6 +18,7 @@ RobotStatus program_status(ProgramState state, const ProgramObservation & observ
 /// RobotState::stopped with ErrorCode::program_stopped.
 RobotStatus program_stopped(std::string message);
 
+/// RobotState::stopped for another reason.
 RobotStatus stopped_by(const Error & error);
 
 /// The watchdog of `program`, of this frequency in Hz, has ended it after `gap` s without a heartbeat.
