@@ -21,9 +21,9 @@ class Jog : public Command<ur_ros_rtde_msgs::action::Jog> {
   {
     run.control()->jogStart(to_ur(goal.twist), goal.frame, goal.acceleration, to_ur(goal.custom_frame));
     const auto stop_reason = wait_for_duration(run, goal.time);
-    const bool is_regular_end =
-        !stop_reason || (goal.time == 0.0 && stop_reason->code == ErrorCode::canceled);
-    return is_regular_end ? Outcome::success() : Outcome(*stop_reason);
+    // A cancel is the regular end of jogging.
+    return stop_reason && stop_reason->code != ErrorCode::canceled ? Outcome(*stop_reason)
+                                                                   : Outcome::success();
   }
 };
 

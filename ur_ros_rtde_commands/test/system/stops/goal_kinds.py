@@ -286,7 +286,7 @@ KINDS: Sequence[GoalKind] = (
     GoalKind("move_path", "move_path", PACKAGE + "MovePath", _move_path, deceleration=_unspecified, runs_script=True, has_corner=True),
     GoalKind("speed_j", "speed_j", PACKAGE + "SpeedJ", _speed_j, JOINT, _own),
     GoalKind("speed_l", "speed_l", PACKAGE + "SpeedL", _speed_l, LINEAR, _own),
-    GoalKind("jog", "jog", PACKAGE + "Jog", _jog),
+    GoalKind("jog", "jog", PACKAGE + "Jog", _jog, succeeds_if_ended=True),
     GoalKind("servo_j", "servo_j", PACKAGE + "ServoJ", _servo_j, JOINT, _own),
     GoalKind("servo_l", "servo_l", PACKAGE + "ServoL", _servo_l, LINEAR, _own),
     GoalKind("servo_c", "servo_c", PACKAGE + "ServoC", _servo_c, LINEAR, _own),
