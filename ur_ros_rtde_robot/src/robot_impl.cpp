@@ -48,6 +48,11 @@ const RobotOptions & checked(const RobotOptions & options)
   return options;
 }
 
+Error control_connection_lost()
+{
+  return {ErrorCode::link_lost, "the connection to the control program was lost; it is being re-established"};
+}
+
 }  // namespace
 
 std::string watchdog_frequency_problem(double frequency)

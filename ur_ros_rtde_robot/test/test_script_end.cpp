@@ -178,9 +178,13 @@ TEST_F(ScriptEndTest, MayBePausedIfItsCallerWaits)
     }
     return std::nullopt;
   };
-  const auto report = run_script("movej([1, -1.5, 1.5, -1.5, -1.5, 0], a=5, v=2)\n", options);
+  auto lease = robot->acquire(claim(Resource::script));
+  ASSERT_TRUE(lease);
+  const auto report = robot->run_script(*lease, "movej([1, -1.5, 1.5, -1.5, -1.5, 0], a=5, v=2)\n", options);
   EXPECT_EQ(report.end, ScriptEnd::finished) << report.error.message;
   EXPECT_TRUE(paused);
+  EXPECT_TRUE(robot->may_continue(*lease)) << "its holder may go on";
+  *lease = {};
   EXPECT_TRUE(is_back());
 }
 

@@ -43,7 +43,7 @@ class MoveDownUntilForce : public ur_ros_rtde::Command<action::MoveDownUntilForc
     while (true) {
       const double force = run.flange_force()[2];
       report(goal, run, force, start);
-      if (!(std::abs(force) <= goal.force)) {  // also if the robot reports none
+      if (!(std::abs(force) <= goal.force)) {  // true without a force, too
         run.control()->stopJ(goal.deceleration, true);
         break;
       }

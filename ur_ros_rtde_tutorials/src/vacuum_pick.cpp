@@ -119,7 +119,7 @@ class VacuumPick : public ur_ros_rtde::Command<action::VacuumPick> {
   Outcome release(Run & run, const Outcome & why) const
   {
     const Outcome off = ur_ros_rtde::set_digital_output(run, output_, false);
-    return off || run.stop_reason()
+    return off || off.code() == why.code()
                ? why
                : Outcome::failure(why.code(), fmt::format("{}; the vacuum may still be on: {}", why.message(),
                                                           off.message()));

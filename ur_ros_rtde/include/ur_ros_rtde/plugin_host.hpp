@@ -137,8 +137,8 @@ class CommandHost : public PluginHost {
   void add_command(const std::string & name, CommandPlugin & command);
   void remove_command(const std::string & name);
   /// No command follows.
-  void end_of_commands();
-  /// Waits for it while commands are still being added, at most 10 s. Null if there is none of that name.
+  void complete_commands();
+  /// Waits while commands are still being added, at most 10 s. Null if there is none of that name.
   CommandPlugin * find_command(const std::string & name, const std::stop_token & stop) const;
 
  private:

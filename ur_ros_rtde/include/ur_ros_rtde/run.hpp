@@ -177,9 +177,9 @@ class Run {
   /// request and waits for the answer, unless the goal has to end or there was a stop; then throws RobotError
   /// with the reason. A command that powers the arm off waits for the call, up to 2.5 s.
   void unless_stopped(const std::function<void()> & request) const;
-  /// Throws RobotError if the result of this goal was sent because run() did not return in time: what it
-  /// would do may disturb a later goal. For requests to devices of the plugin, which io() cannot see.
-  void require_unsent_result() const;
+  /// The result of this goal was sent because run() did not return in time: what it would do may disturb a
+  /// later goal. To be asked before requests to devices of the plugin, which io() cannot see.
+  bool is_abandoned() const;
 
   // Streams that brake by themselves
 
@@ -217,6 +217,7 @@ class Run {
   std::optional<StopReason> wait(const std::function<bool()> & condition,
                                  std::chrono::steady_clock::time_point deadline);
   void publish_feedback_if_due();
+  void require_unsent_result() const;
   CommandPlugin * find_command(const std::string & name) const;
   Outcome execute(const CalledCommand & called);
   Status may_execute(const CalledCommand & called) const;

@@ -139,7 +139,7 @@ Outcome Run::settle(const CalledCommand & called, const Outcome & outcome, Activ
     options.keep = options.keep | outlasting_modes;
   }
   if (const Status stopped = stop_except_kept(options); !stopped && outcome) {
-    return standstill_not_confirmed({stopped.error().code, {}}, stopped.error());
+    return standstill_not_confirmed(stopped.error());
   }
   return outcome;
 }

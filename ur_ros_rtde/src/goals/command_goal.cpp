@@ -261,7 +261,7 @@ Outcome CommandGoal::leave_modes(const Outcome & outcome)
 Outcome CommandGoal::explain(Outcome outcome, const Generation & begin) const
 {
   const Resource resource = command_->traits.resource;
-  if (outcome && command_->needs_motion()) {
+  if (outcome && command_->needs_motion() && resource != Resource::script) {
     const std::lock_guard lock(lease_mutex_);
     const Status valid = robot().is_valid(lease_);
     return is_lost(valid) ? valid : outcome;  // the command has not seen what the arm did
@@ -316,7 +316,8 @@ Outcome CommandGoal::settle(const Outcome & outcome)
   if (stopped) {
     return end;
   }
-  return standstill_not_confirmed(end ? Error{stopped.error().code, {}} : end.error(), stopped.error());
+  return end ? standstill_not_confirmed(stopped.error())
+             : standstill_not_confirmed(end.error(), stopped.error());
 }
 
 }  // namespace ur_ros_rtde

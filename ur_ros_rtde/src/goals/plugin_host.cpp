@@ -154,7 +154,7 @@ void CommandHost::add_command(const std::string & name, CommandPlugin & command)
   commands_changed_.notify_all();
 }
 
-void CommandHost::end_of_commands()
+void CommandHost::complete_commands()
 {
   {
     const std::lock_guard lock(commands_mutex_);

@@ -68,9 +68,14 @@ Locked<ur_rtde::DashboardClient> Run::dashboard() const
   return context_.robot.dashboard();
 }
 
+bool Run::is_abandoned() const
+{
+  return context_.stop_request->is_abandoned();
+}
+
 void Run::require_unsent_result() const
 {
-  if (context_.stop_request->is_abandoned()) {
+  if (is_abandoned()) {
     throw RobotError(context_.stop_request->reason().value());
   }
 }

@@ -58,7 +58,7 @@ std::vector<const rcl_cxx::CallbackGroup *> CommandServer::groups()
 void CommandServer::create_actions()
 {
   plugins_.start(*host_, log_plugin_problems(node_));
-  host_->end_of_commands();
+  host_->complete_commands();
   log_commands(node_->get_logger(), "commands", plugins_.names());
 }
 

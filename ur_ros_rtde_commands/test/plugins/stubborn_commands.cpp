@@ -84,6 +84,21 @@ class NeverLooks : public Command<SpeedJAction> {
   }
 };
 
+/// Turns joints until the connection is another one, and does not look at more than that.
+class OutlastsTheLink : public Command<SpeedJAction> {
+  Outcome run(const Goal & goal, Run & run) override
+  {
+    run.control()->speedJ({goal.joint_velocities.begin(), goal.joint_velocities.end()}, goal.acceleration,
+                          0.0);
+    constexpr std::chrono::milliseconds period{5};
+    const auto link = run.state().link;
+    for (const auto end = end_of(goal); run.state().link == link && Clock::now() < end;) {
+      std::this_thread::sleep_for(period);
+    }
+    return Outcome::success();
+  }
+};
+
 /// Turns joints with the resource of a mode, hangs while they turn, and switches an output on then.
 class TurnsAndHangs : public Command<SpeedJAction> {
   CommandTraits traits() const override { return {.resource = Resource::mode}; }
@@ -147,6 +162,7 @@ UR_ROS_RTDE_EXPORT(SlowToCheck, "slow_to_check")
 UR_ROS_RTDE_EXPORT(VerySlowToCheck, "very_slow_to_check")
 UR_ROS_RTDE_EXPORT(SlowToLook, "slow_to_look")
 UR_ROS_RTDE_EXPORT(NeverLooks, "never_looks")
+UR_ROS_RTDE_EXPORT(OutlastsTheLink, "outlasts_the_link")
 UR_ROS_RTDE_EXPORT(TurnsAndHangs, "turns_and_hangs")
 UR_ROS_RTDE_EXPORT(BlocksCallbacks, "blocks_callbacks")
 UR_ROS_RTDE_EXPORT(Fails, "fails")

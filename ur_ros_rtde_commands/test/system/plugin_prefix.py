@@ -9,7 +9,8 @@ from programs import find_program, start_node
 
 # Commands that are built with the tests (test/plugins), and their package.
 TEST_COMMANDS = "test_commands"
-_CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "calls_speed_j": "CallsSpeedJ",
+_CLASSES = {"slow_to_look": "SlowToLook", "never_looks": "NeverLooks", "outlasts_the_link": "OutlastsTheLink",
+            "calls_speed_j": "CallsSpeedJ",
             "calls_move_j_relative": "CallsMoveJRelative", "calls_itself": "CallsItself",
             "calls_without_the_arm": "CallsWithoutTheArm", "leaves_turning": "LeavesTurning", "moves_on": "MovesOn",
             "turns_as_mode": "TurnsAsMode", "turns_as_output": "TurnsAsOutput", "turns_and_hangs": "TurnsAndHangs",

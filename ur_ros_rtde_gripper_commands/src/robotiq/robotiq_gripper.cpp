@@ -100,10 +100,11 @@ int RobotiqGripper::get(std::string_view name)
   return *value;
 }
 
-/// An answer may be so late that the result of this goal was sent: the gripper belongs to the next one then.
 void RobotiqGripper::set(const std::string & assignments)
 {
-  run_.require_unsent_result();
+  if (run_.is_abandoned()) {
+    throw RobotError(run_.stop_reason().value());  // while the URCap did not answer
+  }
   if (const auto done = client_.set(assignments); !done) {
     throw RobotError(done.error());
   }
@@ -251,13 +252,13 @@ Outcome RobotiqGripper::stop_unless_successful(const std::function<Outcome()> & 
   if (outcome) {
     return outcome;
   }
-  try {
-    set(registers);
-    return outcome;
-  } catch (const RobotError & error) {
-    return Outcome::failure(
-        outcome.code(), fmt::format("{}; the fingers may still move: {}", outcome.message(), error.what()));
+  if (run_.is_abandoned() && run_.robot().holder(ur_ros_rtde::Resource::io)) {
+    return outcome;  // the gripper may be that of another goal
   }
+  const auto stopped = client_.set(registers);
+  return stopped ? outcome
+                 : Outcome::failure(outcome.code(), fmt::format("{}; the fingers may still move: {}",
+                                                                outcome.message(), stopped.error().message));
 }
 
 }  // namespace ur_ros_rtde_gripper_commands

@@ -24,11 +24,16 @@ const char * to_string(StopMeans means)
   return "unknown";
 }
 
+Error standstill_not_confirmed(const Error & stop)
+{
+  return {stop.code, fmt::format("standstill is not confirmed: {}", stop.message)};
+}
+
 Error standstill_not_confirmed(const Error & why, const Error & stop)
 {
-  const bool tells_both = stop.message.find(why.message) != std::string::npos;
-  const std::string cause = tells_both ? "" : why.message + "; ";
-  return {why.code, fmt::format("{}standstill is not confirmed: {}", cause, stop.message)};
+  const bool names_cause = stop.message.find(why.message) != std::string::npos;
+  const std::string cause = names_cause ? "" : why.message + "; ";
+  return {why.code, cause + standstill_not_confirmed(stop).message};
 }
 
 void StandstillDetector::add(const Sample & sample)

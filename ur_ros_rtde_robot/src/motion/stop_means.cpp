@@ -300,7 +300,8 @@ Status MotionStopper::stop_script(const MotionTracker::View & before)
   }
   const std::uint64_t sequence = tracker_.view().sequence + sample_delay;
   const bool ended = wait_for(program_stop_timeout, [&](const Sample & sample) {
-    return sample.sequence >= sequence && sample.runtime_state == RuntimeState::stopped;  // not paused
+    return sample.sequence >= sequence && tracker_.view().sequence >= sample.sequence &&
+           sample.runtime_state == RuntimeState::stopped;  // not paused
   });
   ended_programs_ += tracker_.view().program != before.program ? 1 : 0;
   return ended ? Status() : failure(ErrorCode::timeout, "the script was stopped, but has not ended");
@@ -327,15 +328,17 @@ Status MotionStopper::stop_by_watchdog(const StopOptions & options)
     return failure(ErrorCode::not_supported, "the program has no watchdog (watchdog_frequency: 0)");
   }
   const bool begins = !before.program_running && script_begins(before);
-  const std::uint64_t sequence = tracker_.view().sequence + (begins ? sample_delay : 0);
+  const auto shown = Clock::now() + max_skew;  // by the samples, which may be later than what has told it
   // Until its end, the program may move the arm again.
-  const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [sequence](const Sample & sample) {
-    return sample.sequence >= sequence && sample.runtime_state == RuntimeState::stopped;
+  const bool ended = wait_for(program_stop_timeout + 1.0 / frequency, [&](const Sample & sample) {
+    const auto view = tracker_.view();
+    const bool has_shown = !begins || view.program != before.program || Clock::now() > shown;
+    return has_shown && view.sequence >= sample.sequence && sample.runtime_state == RuntimeState::stopped;
   });
   if (!ended) {
     return failure(ErrorCode::timeout, "the watchdog of the program has not ended it");
   }
-  ended_programs_ += before.program_running ? 1 : 0;
+  ended_programs_ += tracker_.view().program != before.program ? 1 : 0;
   return wait_for_standstill(program_stop_timeout, options)
              ? Status()
              : failure(ErrorCode::timeout, "the arm moves although the watchdog has ended its program");

@@ -219,10 +219,21 @@ bool ControlProgramManager::follows_newest_link() const
 
 bool ControlProgramManager::wait_for_program(ProgramActivity program, milliseconds timeout) const
 {
+  return wait_for_program([program](ProgramActivity now) { return now == program; }, timeout);
+}
+
+bool ControlProgramManager::wait_while_program_plays(milliseconds timeout) const
+{
+  return wait_for_program([](ProgramActivity now) { return now != ProgramActivity::playing; }, timeout);
+}
+
+bool ControlProgramManager::wait_for_program(const std::function<bool(ProgramActivity)> & condition,
+                                             milliseconds timeout) const
+{
   constexpr milliseconds link_check_interval(50);
   const auto stop = stop_.get_token();
   const auto deadline = Clock::now() + timeout;
-  const auto reached = [&] { return observation_.program == program; };
+  const auto reached = [&] { return condition(observation_.program); };
   while (Clock::now() < deadline && !stop.stop_requested() && follows_newest_link()) {
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, stop, link_check_interval, reached)) {
@@ -244,6 +255,7 @@ void ControlProgramManager::suspend_program()
   // The samples come over another connection than what the control interface has seen, and may be late.
   const bool is_stopped = wait_for_program(ProgramActivity::stopped, max_skew);
   if (is_stopped || was_paused_ || !interfaces_.pending_program_plays()) {
+    wait_while_program_plays(program_end_timeout);
     dispatch(ProgramEvent::yield_failed);  // something else has stopped it; another program may have run
     return;
   }

@@ -40,7 +40,7 @@ Status ControlProgramManager::yield(milliseconds timeout)
   }
   process(ProgramEvent::yield_canceled);
   request_cycle();
-  if (status_.state != RobotState::ready) {
+  if (status_.state == RobotState::stopped || status_.state == RobotState::disconnected) {
     return failure(status_.cause, status_.message);
   }
   return failure(ErrorCode::program_stopped,

@@ -120,6 +120,9 @@ class ControlProgramManager {
   /// False if the connection was lost, even if there is a new one.
   bool follows_newest_link() const;
   bool wait_for_program(ProgramActivity program, std::chrono::milliseconds timeout) const;
+  bool wait_while_program_plays(std::chrono::milliseconds timeout) const;
+  bool wait_for_program(const std::function<bool(ProgramActivity)> & condition,
+                        std::chrono::milliseconds timeout) const;
 
   Status resume_by(ProgramEvent event, std::chrono::milliseconds timeout);
   /// Hold mutex_.

@@ -41,12 +41,13 @@ enum class ProgramEvent : std::uint8_t {
   robot_ready,        ///< nothing but the program on the robot prevents a start
   program_started,
   start_failed,     ///< the control program did not start or does not answer
-  start_aborted,    ///< it was not started: a connection failed
+  start_aborted,    ///< it was not sent: a connection failed, the robot cannot move, or another program has
+                    ///< begun
   program_adopted,  ///< the program that the URCap started is the control program
   inputs_in_use,    ///< the controller rejected an interface: another client has its inputs
   yield_requested,
   yield_rejected,  ///< a condition of the robot prevents motion; nothing has been done
-  yield_failed,    ///< the control program could not be ended
+  yield_failed,    ///< the control program could not be ended, or somebody else has ended or paused it
   yield_canceled,  ///< the requester waits no longer
   program_yielded,
   resume_requested,

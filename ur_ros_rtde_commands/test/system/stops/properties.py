@@ -104,7 +104,7 @@ class Checks:
             speed = trace.speeds[stopping.moved_again]
             self._violation(f"the arm moves again {CYCLE * (stopping.moved_again - stopping.event):.3f} s after the event, {speed}")
         if self._may_brake_late() and self._is_faster_after_hold(trace, stopping.event):
-            self._violation("after the hold, the arm is faster than at the event")
+            self._violation("after the hold, the arm is faster than before it")
         if self.drift > MAX_DRIFT:
             self._violation(f"the arm drifts by {self.drift:.4f} rad after the stop")
         limit = self._rest_limit() + CYCLE * (trace.index(self._lane.took_effect) - stopping.event)
@@ -120,9 +120,9 @@ class Checks:
         return self.hold is not None and self._brakes_along_path() and self._lane.preempting_goal is None
 
     def _is_faster_after_hold(self, trace: motion.Trace, event: int) -> bool:
-        before, after = event + CYCLES_OF_ACCELERATION, trace.index(self.hold["end"])
+        begin, end = max(event, trace.index(self.hold["begin"])), trace.index(self.hold["end"])
         speeds = [speed for speed, _tcp in trace.speeds]
-        return after > before and max(speeds[after:], default=0.0) > max(speeds[event:before + 1], default=0.0)
+        return end > begin and max(speeds[end:], default=0.0) > max(speeds[begin:begin + CYCLES_OF_ACCELERATION])
 
     def _rest_limit(self) -> float:
         """s, until the arm decelerates."""

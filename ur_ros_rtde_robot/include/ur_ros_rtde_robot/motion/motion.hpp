@@ -68,7 +68,8 @@ struct StopReport {
 
 // For the driver
 
-/// Of what ends because of `why`, if the stop of the arm fails with `stop`.
+/// Of a success, if the stop of the arm fails with `stop`; of what ends because of `why`.
+Error standstill_not_confirmed(const Error & stop);
 Error standstill_not_confirmed(const Error & why, const Error & stop);
 
 /// Detects standstill from the actual joint velocities of consecutive samples.

@@ -16,7 +16,6 @@
 #include "ur_ros_rtde_robot/connection/locked.hpp"
 #include "ur_ros_rtde_robot/connection/log.hpp"
 #include "ur_ros_rtde_robot/robot_options.hpp"
-#include "ur_ros_rtde_trajectory/error.hpp"
 
 namespace ur_rtde {
 class RTDEControlInterface;
@@ -24,12 +23,6 @@ class RTDEIOInterface;
 }  // namespace ur_rtde
 
 namespace ur_ros_rtde {
-
-/// Why a goal ends.
-inline Error control_connection_lost()
-{
-  return {ErrorCode::link_lost, "the connection to the control program was lost; it is being re-established"};
-}
 
 /// Index of the first general purpose register that the driver uses.
 constexpr int register_offset(const RobotOptions & options)

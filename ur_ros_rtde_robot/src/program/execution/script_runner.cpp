@@ -166,10 +166,14 @@ ScriptReport ScriptRunner::run_program(Permit & holder, const script::Program & 
   }
   const auto before = tracker_.view().program;
   ScriptReport report = monitor_program(holder, program, monitor);
-  if (report.end == ScriptEnd::finished) {  // a script of one cycle leaves no trace in the samples
-    wait_until(state_, standstill_timeout,
-               [this](const Sample & sample) { return tracker_.view().sequence >= sample.sequence; });
-    ended_programs_ += tracker_.view().program != before ? 1 : 0;
+  if (report.end == ScriptEnd::finished) {
+    // A script of one cycle leaves no trace in the samples; the tracker counts a pause as an end.
+    const auto end = std::chrono::steady_clock::now();
+    wait_until(state_, standstill_timeout, [&](const Sample & sample) {
+      const auto view = tracker_.view();
+      return view.sequence >= sample.sequence && (view.program != before || sample.received > end);
+    });
+    ended_programs_ += tracker_.view().program - before;
   }
   if (holder.revoked()) {  // the stop under way must not meet the control program
     stopper_.end(holder, {}).wait();
