@@ -126,8 +126,8 @@ std::optional<Status> ExtensionRunner::result(Run & run, const ExtensionOptions 
   }
   update(run, *sample);
   if (options.stop_reason) {
-    if (const auto reason = options.stop_reason()) {
-      return Status(tl::unexpected(*reason));
+    if (const auto reason = options.stop_reason()) {  // it may have seen the end of the program first
+      return reason->code == ErrorCode::program_stopped ? failure_of(run) : Status(tl::unexpected(*reason));
     }
   }
   if ((run.begun && acknowledgement == 0.0) || has_lost_connection(run)) {
