@@ -88,14 +88,28 @@ def test_a_cancel_while_the_gripper_answers_is_not_followed_by_a_motion(urcap, r
     assert urcap.requests == ["GTO 0 POS 0 SPE 255 FOR 128", "GTO 0"]
 
 
-def test_a_goal_that_waits_for_an_answer_after_its_result_does_not_disturb_the_next_one(urcap, robot):
+@pytest.fixture
+def abandoned(urcap, robot):
+    """A canceled goal still waits for an answer, after its result."""
     urcap.answers_pre.clear()
-    first = robot.send(RobotiqGrip, "robotiq_open")
+    goal = robot.send(RobotiqGrip, "robotiq_open")
     wait_for(lambda: urcap.requests, 10.0, "the target")
-    first.cancel()
-    status, result = first.wait_for_result()
+    goal.cancel()
+    status, result = goal.wait_for_result()
     assert status == GoalStatus.STATUS_CANCELED and "did not return" in result.message, result.message
     del urcap.requests[:]
+
+
+def test_an_abandoned_goal_stops_the_fingers_when_the_gripper_answers(urcap, abandoned):
     urcap.answers_pre.set()
-    robot.send(RobotiqGrip, "robotiq_close").succeeded(20.0)
-    assert urcap.requests == ["GTO 0 POS 255 SPE 255 FOR 128", "GTO 1"]
+    wait_for(lambda: urcap.requests, 10.0, "the stop")
+    assert urcap.requests == ["GTO 0"]
+
+
+def test_an_abandoned_goal_does_not_disturb_the_next_one(urcap, abandoned, robot):
+    target = "GTO 0 POS 255 SPE 255 FOR 128"
+    goal = robot.send(RobotiqGrip, "robotiq_close")
+    wait_for(lambda: urcap.requests == [target], 10.0, "the target of the next goal")
+    urcap.answers_pre.set()
+    goal.succeeded(20.0)
+    assert urcap.requests == [target, "GTO 1"]
