@@ -98,6 +98,8 @@ class MotionStopper {
   static std::span<const Means> means();
   /// s of the controller, from the end of a program, or a safety stop, to the standstill.
   static constexpr double program_stop_timeout = 1.5;
+  /// The samples reflect commands with a delay of some cycles.
+  static constexpr std::uint64_t sample_delay = 5;
   /// Until its end, no claim is granted.
   class Beginning;
 

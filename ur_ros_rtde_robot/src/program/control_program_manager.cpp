@@ -29,21 +29,6 @@ std::uint64_t modes_of(const Sample & sample)
 
 }  // namespace
 
-const char * to_string(RobotState state)
-{
-  switch (state) {
-    case RobotState::disconnected:
-      return "disconnected";
-    case RobotState::connecting:
-      return "connecting";
-    case RobotState::ready:
-      return "ready";
-    case RobotState::stopped:
-      return "stopped";
-  }
-  return "unknown";
-}
-
 ControlProgramManager::ControlProgramManager(const RobotOptions & options, StateReceiver & receiver,
                                              DashboardConnection & dashboard, ArmModel & model,
                                              RtdeInterfaces & interfaces, const ScriptServer & server,

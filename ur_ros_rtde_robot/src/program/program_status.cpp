@@ -61,6 +61,21 @@ RobotStatus urcap_status(ProgramState state, const ProgramObservation & observat
 
 }  // namespace
 
+const char * to_string(RobotState state)
+{
+  switch (state) {
+    case RobotState::disconnected:
+      return "disconnected";
+    case RobotState::connecting:
+      return "connecting";
+    case RobotState::ready:
+      return "ready";
+    case RobotState::stopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
 RobotStatus program_stopped(std::string message)
 {
   return {RobotState::stopped, ErrorCode::program_stopped, std::move(message)};
