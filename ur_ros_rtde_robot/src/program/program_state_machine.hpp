@@ -47,7 +47,7 @@ enum class ProgramEvent : std::uint8_t {
   inputs_in_use,    ///< the controller rejected an interface: another client has its inputs
   yield_requested,
   yield_rejected,  ///< a condition of the robot prevents motion; nothing has been done
-  yield_failed,    ///< the control program could not be ended, or somebody else has ended or paused it
+  yield_failed,    ///< the control program could not be ended, or was ended or paused by something else
   yield_canceled,  ///< the requester waits no longer
   program_yielded,
   resume_requested,

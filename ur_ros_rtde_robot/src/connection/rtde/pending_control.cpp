@@ -88,4 +88,16 @@ Status RtdeInterfaces::adopt_control()
   return {};
 }
 
+bool RtdeInterfaces::has_pending_control() const
+{
+  const std::lock_guard lock(mutex_);
+  return pending_ != nullptr;
+}
+
+bool RtdeInterfaces::pending_program_plays() const
+{
+  const std::lock_guard lock(mutex_);
+  return pending_ && pending_->isConnected() && pending_->isProgramRunning();
+}
+
 }  // namespace ur_ros_rtde

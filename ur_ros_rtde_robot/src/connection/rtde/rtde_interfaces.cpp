@@ -270,18 +270,6 @@ bool RtdeInterfaces::suspend_control()
   return ended;
 }
 
-bool RtdeInterfaces::has_pending_control() const
-{
-  const std::lock_guard lock(mutex_);
-  return pending_ != nullptr;
-}
-
-bool RtdeInterfaces::pending_program_plays() const
-{
-  const std::lock_guard lock(mutex_);
-  return pending_ && pending_->isConnected() && pending_->isProgramRunning();
-}
-
 bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
 {
   std::shared_ptr<RTDEControlInterface> control;
