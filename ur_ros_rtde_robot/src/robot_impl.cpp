@@ -212,7 +212,7 @@ Status Robot::Impl::motion_possible() const
     tracker.add(*sample);  // the receiving thread may not have done so yet: the cause would be an earlier one
     return tl::unexpected(program_ended_error());
   }
-  if (!control) {
+  if (!control || (!has_control && interfaces.control_interface() != control)) {  // closed by the driver
     if (auto why = manager.replacement()) {
       return tl::unexpected(*std::move(why));
     }

@@ -120,9 +120,11 @@ class Checks:
         return self.hold is not None and self._brakes_along_path() and self._lane.preempting_goal is None
 
     def _is_faster_after_hold(self, trace: motion.Trace, event: int) -> bool:
-        begin, end = max(event, trace.index(self.hold["begin"])), trace.index(self.hold["end"])
+        """Of a hold that begins when the arm brakes."""
+        begin, end = trace.index(self.hold["begin"]), trace.index(self.hold["end"])
+        brakes = self._case.event.begin_limit is not None and begin > event + CYCLES_OF_ACCELERATION
         speeds = [speed for speed, _tcp in trace.speeds]
-        return end > begin and max(speeds[end:], default=0.0) > max(speeds[begin:begin + CYCLES_OF_ACCELERATION])
+        return brakes and max(speeds[end:], default=0.0) > max(speeds[begin:begin + CYCLES_OF_ACCELERATION])
 
     def _rest_limit(self) -> float:
         """s, until the arm decelerates."""

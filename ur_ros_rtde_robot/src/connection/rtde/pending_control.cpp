@@ -1,4 +1,5 @@
-// The control interface of a program that the External Control URCap fetches and the operator starts.
+// Pending control interfaces: of a program that was suspended, or that the External Control URCap fetches and
+// the operator starts.
 #include <fmt/format.h>
 #include <ur_rtde/rtde_control_interface.h>
 
@@ -12,6 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using ur_rtde::RTDEControlInterface;
+
+constexpr std::chrono::milliseconds suspend_timeout(500);
 
 }  // namespace
 
@@ -86,6 +89,31 @@ Status RtdeInterfaces::adopt_control()
   const std::lock_guard lock(mutex_);
   activate(std::exchange(pending_, nullptr));
   return {};
+}
+
+bool RtdeInterfaces::suspend_control()
+{
+  std::shared_ptr<RTDEControlInterface> control;
+  {
+    const std::lock_guard lock(mutex_);
+    control = pending_ = activate(nullptr);
+  }
+  if (!control) {
+    return false;
+  }
+  const HeldLock lock = take_control_lock(*control, suspend_timeout);
+  if (!lock) {
+    return false;
+  }
+  bool ended = false;
+  try {
+    control->setCommandTimeout(suspend_timeout);
+    ended = control->stopScript();
+  } catch (const std::exception &) {
+    // The caller stops it by other means.
+  }
+  control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
+  return ended;
 }
 
 bool RtdeInterfaces::has_pending_control() const

@@ -26,7 +26,6 @@ using ur_rtde::RTDEIOInterface;
 constexpr double controllers_frequency = -1.0;
 /// A running control program answers its first command within some cycles.
 constexpr std::chrono::seconds answer_timeout(1);
-constexpr std::chrono::milliseconds suspend_timeout(500);
 constexpr std::chrono::milliseconds close_timeout(1000);
 
 std::uint16_t control_flags(const RobotOptions & options)
@@ -243,31 +242,6 @@ HeldLock RtdeInterfaces::take_control_lock(RTDEControlInterface & control,
     }
   } while (std::chrono::steady_clock::now() < deadline);
   return held(nullptr);
-}
-
-bool RtdeInterfaces::suspend_control()
-{
-  std::shared_ptr<RTDEControlInterface> control;
-  {
-    const std::lock_guard lock(mutex_);
-    control = pending_ = activate(nullptr);
-  }
-  if (!control) {
-    return false;
-  }
-  const HeldLock lock = take_control_lock(*control, suspend_timeout);
-  if (!lock) {
-    return false;
-  }
-  bool ended = false;
-  try {
-    control->setCommandTimeout(suspend_timeout);
-    ended = control->stopScript();
-  } catch (const std::exception &) {
-    // The caller stops it by other means.
-  }
-  control->setCommandTimeout(std::chrono::seconds(UR_EXECUTION_TIMEOUT));
-  return ended;
 }
 
 bool RtdeInterfaces::resume_suspended(const std::stop_token & stop)
