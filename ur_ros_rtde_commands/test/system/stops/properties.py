@@ -120,11 +120,13 @@ class Checks:
         return self.hold is not None and self._brakes_along_path() and self._lane.preempting_goal is None
 
     def _is_faster_after_hold(self, trace: motion.Trace, event: int) -> bool:
-        """Of a hold that begins when the arm brakes."""
+        """Of a hold that begins when the arm brakes, or ends to accelerate within the jerk of its goal."""
         begin, end = trace.index(self.hold["begin"]), trace.index(self.hold["end"])
         brakes = self._case.event.begin_limit is not None and begin > event + CYCLES_OF_ACCELERATION
+        acceleration, jerk = self._case.kind.limits(self._lane.fields)
         speeds = [speed for speed, _tcp in trace.speeds]
-        return brakes and max(speeds[end:], default=0.0) > max(speeds[begin:begin + CYCLES_OF_ACCELERATION])
+        fastest = max(speeds[begin:begin + CYCLES_OF_ACCELERATION]) + 0.5 * acceleration**2 / jerk
+        return brakes and max(speeds[end:], default=0.0) > fastest
 
     def _rest_limit(self) -> float:
         """s, until the arm decelerates."""
