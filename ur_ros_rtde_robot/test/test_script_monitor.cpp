@@ -1,3 +1,4 @@
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -16,23 +17,47 @@ std::string other_address()
   return own.substr(0, own.rfind('.')) + ".1";
 }
 
-using ScriptMonitorTest = StateReceiverTest;
+/// A controller with a receiver of its state, and a primary interface whose messages the test determines.
+struct ScriptMonitorTest : StateReceiverTest {
+  const ScriptMonitor::Markers markers{"begins", "ends"};
+  const decltype(script::make_program({}, {})) program =
+      script::make_program("sync()", {false, markers.begin, markers.end, ""});
+  ur_fuzz::ReplyServer primary_interface{other_address(), 30001};  // closes a connection that is shut down
+  std::unique_ptr<StateReceiver> state;
+
+  void SetUp() override
+  {
+    controller.start();
+    state = receiver();
+    ASSERT_TRUE(connected(*state));
+    ASSERT_TRUE(program);
+  }
+  static PrimaryConnection connect()
+  {
+    auto connection = PrimaryConnection::connect(other_address(), 5s);
+    EXPECT_TRUE(connection) << connection.error().message;
+    return std::move(connection).value();
+  }
+  /// The end of a script whose name the controller reports like this, before its first line.
+  ScriptReport report_with_name(const std::string & name, const std::string & reported)
+  {
+    const auto named =
+        script::make_program("def " + name + "():\n  sync()\nend", {false, markers.begin, markers.end, ""});
+    primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", reported) +
+                                                            primary::key("PROGRAM_XXX_STOPPED", reported));
+    const ScriptOptions options;
+    ScriptMonitor monitor(connect(), *state, markers, options);
+    monitor.run(named.value());
+    return monitor.report();
+  }
+};
 
 TEST_F(ScriptMonitorTest, EndsAtOnceIfTheScriptIsStoppedBeforeItsFirstLine)
 {
-  controller.start();
-  const auto state = receiver();
-  ASSERT_TRUE(connected(*state));
-  const ScriptMonitor::Markers markers{"begins", "ends"};
-  const auto program = script::make_program("sync()", {false, markers.begin, markers.end, ""});
-  ASSERT_TRUE(program);
-  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);
   primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", program->name) +
                                                           primary::key("PROGRAM_XXX_STOPPED", program->name));
-  auto connection = PrimaryConnection::connect(other_address(), 5s);
-  ASSERT_TRUE(connection) << connection.error().message;
   const ScriptOptions options;
-  ScriptMonitor monitor(*std::move(connection), *state, markers, options);
+  ScriptMonitor monitor(connect(), *state, markers, options);
   monitor.run(*program);
   EXPECT_EQ(monitor.report().end, ScriptEnd::stopped) << monitor.report().error.message;
   EXPECT_FALSE(monitor.may_be_running());
@@ -41,24 +66,17 @@ TEST_F(ScriptMonitorTest, EndsAtOnceIfTheScriptIsStoppedBeforeItsFirstLine)
 
 TEST_F(ScriptMonitorTest, EndsAScriptThatIsPausedBeforeItsFirstLine)
 {
-  controller.start();
-  const auto state = receiver();
-  ASSERT_TRUE(connected(*state));
   controller.control(
       {{"command", "run_script"}, {"script", "def f():\n  while True:\n    sync()\n  end\nend\n"}});
-  const auto is = [&state](RuntimeState wanted) {
+  const auto is = [this](RuntimeState wanted) {
     return eventually([&] { return state->latest()->runtime_state == wanted; });
   };
   ASSERT_TRUE(is(RuntimeState::playing));
   controller.control({{"command", "pause_program"}});
   ASSERT_TRUE(is(RuntimeState::paused));
-  const auto program = script::make_program("sync()", {false, "begins", "ends", ""});
-  ASSERT_TRUE(program);
-  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);
   primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", program->name));
   const ScriptOptions options;
-  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), *state, {"begins", "ends"},
-                        options);
+  ScriptMonitor monitor(connect(), *state, markers, options);
   bool is_compiled = false;
   monitor.on_compiled = [&is_compiled] { is_compiled = true; };
   monitor.run(*program);
@@ -69,13 +87,6 @@ TEST_F(ScriptMonitorTest, EndsAScriptThatIsPausedBeforeItsFirstLine)
 /// A stop may have to wait for the begin of a script, or for what tells that it will not begin.
 TEST_F(ScriptMonitorTest, ListensOnAfterAStopOfAScriptThatHasBeenSent)
 {
-  controller.start();
-  const auto state = receiver();
-  ASSERT_TRUE(connected(*state));
-  const ScriptMonitor::Markers markers{"begins", "ends"};
-  const auto program = script::make_program("sync()", {false, markers.begin, markers.end, ""});
-  ASSERT_TRUE(program);
-  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);  // closes a connection that is shut down
   primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", program->name));
   ScriptOptions options;
   ScriptMonitor * fenced = nullptr;
@@ -86,7 +97,7 @@ TEST_F(ScriptMonitorTest, ListensOnAfterAStopOfAScriptThatHasBeenSent)
     fenced->fence();
     return Error{ErrorCode::canceled, "canceled"};
   };
-  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), *state, markers, options);
+  ScriptMonitor monitor(connect(), *state, markers, options);
   fenced = &monitor;
   monitor.run(*program);
   EXPECT_EQ(monitor.report().end, ScriptEnd::interrupted) << monitor.report().error.message;
@@ -96,31 +107,12 @@ TEST_F(ScriptMonitorTest, ListensOnAfterAStopOfAScriptThatHasBeenSent)
   EXPECT_EQ(asked, enough) << "the connection is closed";
 }
 
-/// The end of a script whose name the controller reports like this, before its first line.
-ScriptReport report_with_name(const StateReceiver & state, const std::string & name,
-                              const std::string & reported)
-{
-  const ScriptMonitor::Markers markers{"begins", "ends"};
-  const auto program =
-      script::make_program("def " + name + "():\n  sync()\nend", {false, markers.begin, markers.end, ""});
-  ur_fuzz::ReplyServer primary_interface(other_address(), 30001);
-  primary_interface.set_reply(primary::text("hello"), primary::key("PROGRAM_XXX_STARTED", reported) +
-                                                          primary::key("PROGRAM_XXX_STOPPED", reported));
-  const ScriptOptions options;
-  ScriptMonitor monitor(PrimaryConnection::connect(other_address(), 5s).value(), state, markers, options);
-  monitor.run(program.value());
-  return monitor.report();
-}
-
 TEST_F(ScriptMonitorTest, RecognizesTheBeginningOfALongNameAndNoOther)
 {
-  controller.start();
-  const auto state = receiver();
-  ASSERT_TRUE(connected(*state));
   const std::string name(40, 'x');
-  EXPECT_EQ(report_with_name(*state, name, name.substr(0, 31)).end, ScriptEnd::stopped);
+  EXPECT_EQ(report_with_name(name, name.substr(0, 31)).end, ScriptEnd::stopped);
   for (const std::string & other : {name.substr(0, 30), std::string(31, 'y'), name + "x"}) {
-    const ScriptReport report = report_with_name(*state, name, other);
+    const ScriptReport report = report_with_name(name, other);
     EXPECT_NE(report.error.message.find("another program, `" + other + "`"), std::string::npos)
         << report.error.message;
   }

@@ -142,9 +142,7 @@ void ControlProgramManager::on_sample(const Sample & sample)
   // A program that replaces another one leaves no trace in the runtime state.
   const bool heartbeat_lost = now.state == ProgramState::running && sample.is_program_running() &&
                               interfaces_.control_heartbeat_lost();
-  const bool is_paused =  // a program that ends is STOPPING
-      sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused;
-  if (now.state == ProgramState::yielding && is_paused) {
+  if (now.state == ProgramState::yielding && is_pause(sample.runtime_state)) {
     was_paused_ = true;
   }
   if (now != processed_ || heartbeat_lost) {

@@ -151,6 +151,11 @@ ProgramActivity program_activity(RuntimeState state)
   }
 }
 
+bool is_pause(RuntimeState state)
+{
+  return state == RuntimeState::pausing || state == RuntimeState::paused;
+}
+
 bool ProgramStateMachine::allows(ProgramGuard guard, const ProgramObservation & observation) const
 {
   const bool stopped = observation.program == ProgramActivity::stopped;

@@ -89,6 +89,9 @@ enum class ProgramActivity : std::uint8_t {
 };
 
 ProgramActivity program_activity(RuntimeState state);
+/// Whether it is paused, or about to be: not ProgramActivity::paused, which includes programs that resume or
+/// end.
+bool is_pause(RuntimeState state);
 
 struct ProgramObservation {
   ProgramActivity program = ProgramActivity::stopped;

@@ -10,6 +10,7 @@
 #include "connection/skew.hpp"
 #include "motion/motion_blocker.hpp"
 #include "motion/started_activities.hpp"
+#include "program/program_state_machine.hpp"
 
 namespace ur_ros_rtde {
 namespace {
@@ -346,10 +347,8 @@ void ScriptMonitor::read_until_compiled(const std::function<bool()> & ends)
 /// before a sample has shown it running.
 bool ScriptMonitor::is_paused(const Sample & sample)
 {
-  const bool pauses =
-      sample.runtime_state == RuntimeState::pausing || sample.runtime_state == RuntimeState::paused;
   const auto begin = begin_seen_ ? begin_seen_ : started_;
-  if (!begin || sample.received <= *begin || !pauses) {
+  if (!begin || sample.received <= *begin || !is_pause(sample.runtime_state)) {
     pause_seen_.reset();
     return false;
   }
